@@ -1,0 +1,52 @@
+// What does an estimator believe about its sensors?
+//
+// Values somebody calibrated: near the truth, never the truth. The simulator keeps its own.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "nav/api/geometry.h"
+
+namespace polnav::nav {
+
+// Pinhole with radial-tangential (Brown-Conrady) distortion, OpenCV's order k1 k2 p1 p2.
+struct CameraCalibration {
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = 0.0;  // centre of the top left pixel is (0, 0)
+  double cy_px = 0.0;
+  std::array<double, 4> distortion{};
+  Pose T_BC;  // camera frame: x right, y down, z forward
+};
+
+struct StereoCalibration {
+  CameraCalibration left;
+  CameraCalibration right;
+};
+
+// S: z along the line of sight, x and y as the polarizer angles are counted from x towards y.
+struct PolarimeterCalibration {
+  Pose T_BS;
+  double fov_rad = 0.0;  // full cone
+};
+
+struct ImuCalibration {
+  Pose T_BI;
+  double rate_hz = 0.0;
+  // Continuous-time white noise, one sigma.
+  double gyro_noise_rad_s_sqrt_hz = 0.0;
+  double accel_noise_m_s2_sqrt_hz = 0.0;
+};
+
+// Whatever is absent, the vehicle does not carry.
+struct Rig {
+  std::optional<StereoCalibration> stereo;
+  std::optional<PolarimeterCalibration> polarimeter;
+  std::optional<ImuCalibration> imu;
+};
+
+}  // namespace polnav::nav

@@ -1,0 +1,49 @@
+// What does an estimator answer, and what did it do with what it was given?
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "nav/api/geometry.h"
+#include "nav/api/time.h"
+
+namespace polnav::nav {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+// What a scenario grants at the start. Everything else an estimator finds out by itself.
+struct StartPrior {
+  Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
+  double position_sigma_m = 0.01;
+  double heading_rad = 0.0;
+  double heading_sigma_rad = 0.0;
+  double level_sigma_rad = 0.0;  // of the assumption that the vehicle starts level
+};
+
+struct Estimate {
+  TimeNs stamp = 0;
+  Pose T_WB;
+  // Of (dp_W [m], dtheta_W [rad]): p_true = p + dp, q_true = Exp(dtheta) * q. Both in W.
+  Matrix6d covariance = Matrix6d::Zero();
+  bool tracked = false;  // false: coasting on the last motion, nothing seen
+};
+
+enum class Outcome {
+  kUsed,
+  kGated,        // inconsistent with the estimate
+  kUnusable,     // no information: too dim, too few features, failed self-check
+  kIgnored,      // this estimator has no use for it
+};
+
+// What became of one measurement.
+struct Report {
+  Outcome outcome = Outcome::kIgnored;
+  int features = 0;          // offered
+  int inliers = 0;           // used
+  int flow_rejected = 0;     // moved otherwise than the scene [Chu2021, eq. 12]
+  int keyframes = 0;         // 1 when this measurement made one
+  std::optional<Estimate> estimate;  // present when the measurement produced one
+};
+
+}  // namespace polnav::nav

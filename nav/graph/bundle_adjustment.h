@@ -1,0 +1,33 @@
+// Which poses and landmarks fit everything in the window best?
+//
+// Minimizes [Chu2021, eq. 16] over the sliding window with Ceres: Huber-robust stereo
+// reprojections, headings, levelling, and the marginalization prior.
+#pragma once
+
+#include "nav/graph/window.h"
+#include "nav/stereo/rectifier.h"
+
+namespace polnav::nav {
+
+struct BundleAdjustmentOptions {
+  PixelSigmas sigmas;
+  double huber_sigmas = 1.5;
+  int max_iterations = 6;
+};
+
+struct BundleAdjustmentSummary {
+  bool usable = false;
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+};
+
+BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
+                                     const BundleAdjustmentOptions& options, Window& window);
+
+// Removes sightings further than this from where the adjusted window predicts them, and landmarks
+// left with none. Returns the track ids of removed landmarks.
+std::vector<std::uint64_t> RemoveOutliers(const RectifiedCamera& camera, const PixelSigmas& sigmas,
+                                          double max_sigmas, Window& window);
+
+}  // namespace polnav::nav

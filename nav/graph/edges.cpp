@@ -1,0 +1,59 @@
+#include "nav/graph/edges.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+
+namespace polnav::nav {
+
+std::size_t IndexOf(const Window& window, std::uint64_t keyframe) {
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    if (window.keyframes[i].id == keyframe) return i;
+  }
+  throw std::logic_error("Window: a landmark refers to a keyframe that has slid out");
+}
+
+HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB) {
+  const Eigen::Vector3d x_W = T_WB.q * Eigen::Vector3d::UnitX();
+  const double horizontal2 = x_W.head<2>().squaredNorm();
+  HeadingResidual r;
+  r.residual = WrapPi(edge.heading_rad - CompassHeading(T_WB.q)) / edge.sigma_rad;
+  // psi = atan2(x_E, x_N) and dx = dtheta x x, hence dpsi = (x_N dx_E - x_E dx_N) / (x_E^2 + x_N^2).
+  const Eigen::RowVector3d by_x(x_W.y() / horizontal2, -x_W.x() / horizontal2, 0.0);
+  r.by_pose.setZero();
+  r.by_pose.tail<3>() = by_x * Skew(x_W) / edge.sigma_rad;
+  return r;
+}
+
+LevelResidual EvaluateLevel(const LevelEdge& edge, const Pose& T_WB) {
+  const Eigen::Vector3d up_W = T_WB.q * edge.up_B;
+  LevelResidual r;
+  r.residual = up_W.head<2>() / edge.sigma_rad;
+  r.by_pose.setZero();
+  r.by_pose.rightCols<3>() = -Skew(up_W).topRows<2>() / edge.sigma_rad;
+  return r;
+}
+
+Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta) {
+  const double angle = theta.norm();
+  const Eigen::Matrix3d s = Skew(theta);
+  // 1/12 is the limit at zero; the series' next term is angle^2 / 720.
+  const double c = angle < 1e-4 ? 1.0 / 12.0
+                                : 1.0 / (angle * angle) -
+                                      (1.0 + std::cos(angle)) / (2.0 * angle * std::sin(angle));
+  return Eigen::Matrix3d::Identity() - 0.5 * s + c * s * s;
+}
+
+Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance) {
+  const Eigen::LLT<Matrix6d> llt(covariance);
+  if (llt.info() != Eigen::Success) {
+    throw std::logic_error("PriorFromCovariance: the covariance is not positive definite");
+  }
+  Prior prior;
+  prior.linearized = {T_WB};
+  prior.jacobian = llt.matrixL().solve(Matrix6d::Identity());
+  prior.residual = Eigen::VectorXd::Zero(6);
+  return prior;
+}
+
+}  // namespace polnav::nav

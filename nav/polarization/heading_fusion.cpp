@@ -1,0 +1,69 @@
+#include "nav/polarization/heading_fusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "nav/polarization/six_channel.h"
+#include "nav/polarization/sky_heading.h"
+
+namespace polnav::nav {
+
+HeadingFusion::HeadingFusion(const PolarizationOptions& options,
+                             const PolarimeterCalibration& calibration, SunModel sun)
+    : options_(options), calibration_(calibration), sun_(std::move(sun)) {}
+
+Outcome HeadingFusion::Add(const PolarizationSample& sample) {
+  const auto light = DecodeSixChannels(sample);
+  if (!light || light->dop < options_.min_dop ||
+      std::abs(light->pair_sum) > options_.max_pair_sum) {
+    return Outcome::kUnusable;
+  }
+  const Eigen::Vector3d e_S(std::cos(light->axis_rad), std::sin(light->axis_rad), 0.0);
+  waiting_.push_back({sample.stamp, calibration_.T_BS.q * e_S});
+  return Outcome::kUsed;
+}
+
+void HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
+                            const Eigen::Quaterniond& q_to, double heading_variance) {
+  const double white = DegToRad(options_.reading_sigma_deg);
+  const double slow = DegToRad(options_.correlated_sigma_deg);
+  const double limit =
+      options_.gate_sigmas * std::sqrt(white * white + slow * slow + heading_variance);
+  const auto later = [&](const Reading& r) { return r.stamp > to; };
+  for (const Reading& reading : waiting_) {
+    if (later(reading)) continue;
+    const double share =
+        to > from ? std::clamp(ToSeconds(reading.stamp - from) / ToSeconds(to - from), 0.0, 1.0)
+                  : 1.0;
+    const Eigen::Quaterniond q_WB = q_from.slerp(share, q_to);
+    const auto heading = HeadingFromEVector(reading.e_B, q_WB, sun_(reading.stamp));
+    const double innovation = heading ? WrapPi(*heading - CompassHeading(q_WB)) : limit + 1.0;
+    if (std::abs(innovation) > limit) {
+      ++gated_;
+      continue;
+    }
+    ++used_;
+    ++innovations_;
+    innovation_sum_rad_ += innovation;
+  }
+  std::erase_if(waiting_, [&](const Reading& r) { return !later(r); });
+}
+
+std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB) {
+  if (innovations_ == 0) return std::nullopt;
+  const double n = innovations_;
+  const double mean = innovation_sum_rad_ / n;
+  const double white = DegToRad(options_.reading_sigma_deg);
+  const double slow = DegToRad(options_.correlated_sigma_deg);
+  // A first edge stands for one reading interval at least.
+  const double dt = std::max(ToSeconds(stamp - last_edge_), 0.05);
+  const double slow_share = std::max(1.0, 2.0 * options_.correlation_time_s / dt);
+  innovation_sum_rad_ = 0.0;
+  innovations_ = 0;
+  last_edge_ = stamp;
+  return HeadingEdge{.heading_rad = WrapPi(CompassHeading(q_WB) + mean),
+                     .sigma_rad = std::sqrt(white * white / n + slow * slow * slow_share)};
+}
+
+}  // namespace polnav::nav

@@ -1,0 +1,24 @@
+// Which headings fit a measured E-vector?
+//
+// Under a Rayleigh sky the E-vector is perpendicular to the sun [Chu2021, eqs 5-8]: s_W . e_W = 0.
+// With pitch and roll known, only the turn about the vertical is left, and the equation has two
+// solutions: for a level sensor they are half a turn apart and equal Chu2021's
+//   psi = alpha + f_s +- pi/2   (alpha: E-vector's compass-wise angle from the body's x axis).
+// The real sky is not Rayleigh's; near the horizon and through cloud the difference is degrees.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "nav/api/geometry.h"
+
+namespace polnav::nav {
+
+// e_B: unit E-vector in B (its sign means nothing); q_WB: attitude whose pitch and roll are used
+// and whose heading chooses between the two solutions; sun_W: unit vector towards the sun.
+// Returns the compass heading [rad] nearest to q_WB's, or nothing when no heading fits.
+[[nodiscard]] std::optional<double> HeadingFromEVector(const Eigen::Vector3d& e_B,
+                                                       const Eigen::Quaterniond& q_WB,
+                                                       const Eigen::Vector3d& sun_W);
+
+}  // namespace polnav::nav

@@ -1,0 +1,68 @@
+// How does the stereo estimator behave? YAML keys = field names.
+#pragma once
+
+namespace polnav::nav {
+
+// The front end: corners spread over the image, followed by Lucas-Kanade in the left image and
+// across to the right one, checked both ways.
+struct TrackerOptions {
+  int max_features = 160;            // more: steadier and slower
+  int grid_columns = 12;             // the image is cut into cells that share the features evenly
+  int grid_rows = 7;
+  int min_distance_px = 14;          // between features
+  double corner_quality = 0.01;      // of a cell's corner over the image's best [-]
+  int window_px = 15;                // Lucas-Kanade patch side; larger bears blur, blurs depth edges
+  int pyramid_levels = 3;            // above full size; 3 bears motions of about 60 px
+  double forward_backward_px = 0.6;  // a track must come back to where it was
+  double epipolar_px = 1.2;          // a stereo match must lie on its row in the rectified pair
+  double max_disparity_px = 120.0;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("max_features", max_features, {.min = 20, .max = 2000});
+    v("grid_columns", grid_columns, {.min = 1, .max = 100});
+    v("grid_rows", grid_rows, {.min = 1, .max = 100});
+    v("min_distance_px", min_distance_px, {.min = 2, .max = 100});
+    v("corner_quality", corner_quality, {.min = 1e-6, .max = 1.0});
+    v("window_px", window_px, {.min = 5, .max = 41});
+    v("pyramid_levels", pyramid_levels, {.min = 0, .max = 8});
+    v("forward_backward_px", forward_backward_px, {.min = 0.05, .max = 10.0});
+    v("epipolar_px", epipolar_px, {.min = 0.1, .max = 10.0});
+    v("max_disparity_px", max_disparity_px, {.min = 1.0, .max = 1000.0});
+  }
+};
+
+struct StereoOptions {
+  TrackerOptions tracker;
+  double pixel_sigma_px = 0.35;      // of a tracked position; larger trusts vision less
+  double disparity_sigma_px = 0.30;
+  double flow_threshold_px = 4.0;    // A of [Chu2021, eq. 12]: departure from the predicted flow
+  double inlier_sigmas = 3.0;        // departure from the solved pose that makes an outlier
+  int min_inliers = 12;              // fewer: the frame is not tracked, the estimate coasts
+  int window_keyframes = 8;          // longer: less drift, slower (cost grows with its square)
+  double keyframe_distance_m = 1.0;
+  double keyframe_angle_deg = 4.0;
+  double keyframe_overlap = 0.5;     // a keyframe too when fewer of the last one's points are left
+  int max_iterations = 6;            // of the bundle adjustment, a keyframe
+  double levelling_time_s = 1.0;     // standing still, the accelerometer levels the start
+  double levelling_sigma_deg = 0.3;  // what the accelerometer's bias leaves of it
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("tracker", tracker);
+    v("pixel_sigma_px", pixel_sigma_px, {.min = 0.01, .max = 10.0});
+    v("disparity_sigma_px", disparity_sigma_px, {.min = 0.01, .max = 10.0});
+    v("flow_threshold_px", flow_threshold_px, {.min = 0.1, .max = 100.0});
+    v("inlier_sigmas", inlier_sigmas, {.min = 1.0, .max = 20.0});
+    v("min_inliers", min_inliers, {.min = 4, .max = 1000});
+    v("window_keyframes", window_keyframes, {.min = 3, .max = 50});
+    v("keyframe_distance_m", keyframe_distance_m, {.min = 0.01, .max = 100.0});
+    v("keyframe_angle_deg", keyframe_angle_deg, {.min = 0.1, .max = 90.0});
+    v("keyframe_overlap", keyframe_overlap, {.min = 0.0, .max = 1.0});
+    v("max_iterations", max_iterations, {.min = 1, .max = 100});
+    v("levelling_time_s", levelling_time_s, {.min = 0.1, .max = 60.0});
+    v("levelling_sigma_deg", levelling_sigma_deg, {.min = 0.001, .max = 10.0});
+  }
+};
+
+}  // namespace polnav::nav

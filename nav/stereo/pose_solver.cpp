@@ -1,0 +1,65 @@
+#include "nav/stereo/pose_solver.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace polnav::nav {
+namespace {
+
+struct Normal {
+  Matrix6d H = Matrix6d::Zero();
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
+Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>& views,
+                 const Pose& T_WB, const PoseSolverOptions& options) {
+  Normal n;
+  for (const LandmarkView& view : views) {
+    const auto e =
+        Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);
+    if (!e) continue;
+    const double norm = e->residual.norm();
+    const double weight = norm <= options.huber_sigmas ? 1.0 : options.huber_sigmas / norm;
+    n.H += weight * e->by_target.transpose() * e->by_target;
+    n.g += weight * e->by_target.transpose() * e->residual;
+  }
+  return n;
+}
+
+}  // namespace
+
+std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
+                                      const std::vector<LandmarkView>& views, const Pose& T_WB,
+                                      const PoseSolverOptions& options, int min_inliers) {
+  if (static_cast<int>(views.size()) < min_inliers) return std::nullopt;
+  PoseSolution solution{.T_WB = T_WB};
+  for (int i = 0; i < options.max_iterations; ++i) {
+    const Normal n = Linearize(camera, views, solution.T_WB, options);
+    const Eigen::LDLT<Matrix6d> solver(n.H);
+    if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
+    const Eigen::Matrix<double, 6, 1> step = -solver.solve(n.g);
+    if (!step.allFinite()) return std::nullopt;
+    solution.T_WB = Perturb(solution.T_WB, step);
+    // 1e-5 m and 1e-5 rad: a hundredth of what one frame's pixels resolve.
+    if (step.cwiseAbs().maxCoeff() < 1e-5) break;
+  }
+  std::vector<LandmarkView> inliers;
+  for (const LandmarkView& view : views) {
+    const auto e =
+        Reproject(camera, *view.T_WBh, solution.T_WB, view.landmark, view.pixel, options.sigmas);
+    const bool in = e && e->residual.cwiseAbs().maxCoeff() <= options.inlier_sigmas;
+    solution.inlier.push_back(in);
+    if (in) inliers.push_back(view);
+  }
+  solution.inliers = static_cast<int>(inliers.size());
+  if (solution.inliers < min_inliers) return std::nullopt;
+  const Normal n = Linearize(camera, inliers, solution.T_WB, options);
+  const Eigen::LDLT<Matrix6d> solver(n.H);
+  if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
+  solution.T_WB = Perturb(solution.T_WB, -solver.solve(n.g));
+  solution.covariance = solver.solve(Matrix6d::Identity());
+  return solution;
+}
+
+}  // namespace polnav::nav

@@ -1,0 +1,44 @@
+// From where does one frame see the landmarks as it does?
+//
+// Huber-robust Gauss-Newton on e1-e3 of [Chu2021, eq. 15] over the newest pose alone, landmarks and
+// keyframes held, then a verdict on each view.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "nav/api/estimate.h"
+#include "nav/stereo/reprojection.h"
+
+namespace polnav::nav {
+
+// A landmark of the window as the newest frame sees it.
+struct LandmarkView {
+  std::uint64_t id = 0;
+  const Pose* T_WBh = nullptr;  // of the landmark's host; outlives the view
+  Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
+  StereoPixel pixel;
+};
+
+struct PoseSolverOptions {
+  PixelSigmas sigmas;
+  double huber_sigmas = 1.5;
+  double inlier_sigmas = 3.0;
+  int max_iterations = 10;
+};
+
+struct PoseSolution {
+  Pose T_WB;
+  std::vector<bool> inlier;  // one a view
+  int inliers = 0;
+  Matrix6d covariance = Matrix6d::Zero();  // of (dp, dtheta) in W, landmarks taken as known
+};
+
+// Starts from T_WB. Nothing when fewer than min_inliers agree or the geometry is degenerate.
+[[nodiscard]] std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
+                                                    const std::vector<LandmarkView>& views,
+                                                    const Pose& T_WB,
+                                                    const PoseSolverOptions& options,
+                                                    int min_inliers);
+
+}  // namespace polnav::nav

@@ -1,0 +1,64 @@
+#include "nav/stereo/rectifier.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/calib3d.hpp>
+
+namespace polnav::nav {
+namespace {
+
+cv::Matx33d ToCv(const Eigen::Matrix3d& m) {
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
+}
+
+// Rows of the virtual pair run along the baseline; it looks where both cameras look on average.
+Eigen::Matrix3d VirtualAxes(const CameraCalibration& left, const CameraCalibration& right) {
+  const Eigen::Vector3d x = (right.T_BC.p - left.T_BC.p).normalized();
+  const Eigen::Vector3d forward =
+      left.T_BC.q * Eigen::Vector3d::UnitZ() + right.T_BC.q * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d y = forward.cross(x).normalized();
+  Eigen::Matrix3d R_BC;
+  R_BC << x, y, x.cross(y);
+  return R_BC;
+}
+
+}  // namespace
+
+StereoRectifier::StereoRectifier(const StereoCalibration& calibration) {
+  const auto& [left, right] = calibration;
+  const Eigen::Matrix3d R_BC = VirtualAxes(left, right);
+  camera_ = {.f_px = 0.5 * (left.fx_px + left.fy_px),
+             .cx_px = left.cx_px,
+             .cy_px = left.cy_px,
+             .baseline_m = (right.T_BC.p - left.T_BC.p).norm(),
+             .T_BC = {Eigen::Quaterniond(R_BC), left.T_BC.p}};
+  const auto side = [&](const CameraCalibration& c) {
+    return Side{.intrinsics = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1},
+                .distortion = {c.distortion[0], c.distortion[1], c.distortion[2], c.distortion[3]},
+                .rotation = ToCv(R_BC.transpose() * c.T_BC.q.toRotationMatrix())};
+  };
+  left_ = side(left);
+  right_ = side(right);
+}
+
+std::vector<cv::Point2f> StereoRectifier::Rectify(const Side& side,
+                                                  const std::vector<cv::Point2f>& raw) const {
+  std::vector<cv::Point2f> rectified;
+  if (raw.empty()) return rectified;
+  const cv::Matx33d virtual_camera(camera_.f_px, 0, camera_.cx_px, 0, camera_.f_px, camera_.cy_px,
+                                   0, 0, 1);
+  // The distortion has no closed inverse; 1e-3 px is far below what tracking resolves.
+  const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 1e-3);
+  cv::undistortPoints(raw, rectified, side.intrinsics, side.distortion, side.rotation,
+                      virtual_camera, until);
+  return rectified;
+}
+
+std::vector<cv::Point2f> StereoRectifier::RectifyLeft(const std::vector<cv::Point2f>& raw) const {
+  return Rectify(left_, raw);
+}
+
+std::vector<cv::Point2f> StereoRectifier::RectifyRight(const std::vector<cv::Point2f>& raw) const {
+  return Rectify(right_, raw);
+}
+
+}  // namespace polnav::nav

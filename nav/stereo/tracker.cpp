@@ -1,0 +1,152 @@
+#include "nav/stereo/tracker.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+#include <stdexcept>
+
+namespace polnav::nav {
+namespace {
+
+const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.01);
+
+std::vector<cv::Mat> Pyramid(const cv::Mat& image, const TrackerOptions& options) {
+  std::vector<cv::Mat> pyramid;
+  cv::buildOpticalFlowPyramid(image, pyramid, {options.window_px, options.window_px},
+                              options.pyramid_levels);
+  return pyramid;
+}
+
+// Follows points from one image to another and back; a point that does not return to within the
+// threshold is not to be trusted. `to` holds the first guess on entry.
+std::vector<bool> FollowBothWays(const std::vector<cv::Mat>& from_pyramid,
+                                 const std::vector<cv::Mat>& to_pyramid,
+                                 const std::vector<cv::Point2f>& from, std::vector<cv::Point2f>& to,
+                                 const TrackerOptions& options) {
+  std::vector<bool> ok(from.size(), false);
+  if (from.empty()) return ok;
+  const cv::Size window(options.window_px, options.window_px);
+  std::vector<std::uint8_t> status;
+  std::vector<std::uint8_t> status_back;
+  cv::calcOpticalFlowPyrLK(from_pyramid, to_pyramid, from, to, status, cv::noArray(), window,
+                           options.pyramid_levels, kUntil, cv::OPTFLOW_USE_INITIAL_FLOW);
+  // Starting the way back from the origin would hide a patch that locked onto something else;
+  // one pyramid level suffices to see whether it comes back.
+  std::vector<cv::Point2f> back = from;
+  cv::calcOpticalFlowPyrLK(to_pyramid, from_pyramid, to, back, status_back, cv::noArray(), window,
+                           1, kUntil, cv::OPTFLOW_USE_INITIAL_FLOW);
+  const cv::Size size = to_pyramid[0].size();
+  const auto limit = static_cast<float>(options.forward_backward_px);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const cv::Point2f d = back[i] - from[i];
+    const bool inside = to[i].x >= 1 && to[i].y >= 1 && to[i].x < size.width - 2 &&
+                        to[i].y < size.height - 2;
+    ok[i] = status[i] != 0 && status_back[i] != 0 && inside && d.dot(d) < limit * limit;
+  }
+  return ok;
+}
+
+}  // namespace
+
+StereoTracker::StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration)
+    : options_(options), rectifier_(calibration) {}
+
+StereoFeatures StereoTracker::Track(const StereoImages& images) {
+  if (images.left.type() != CV_8UC1 || images.left.size() != images.right.size()) {
+    throw std::logic_error("StereoTracker: needs two 8-bit grey images of one size");
+  }
+  const std::vector<cv::Mat> left = Pyramid(images.left, options_);
+  const std::vector<cv::Mat> right = Pyramid(images.right, options_);
+  if (!pyramid_.empty()) FollowInTime(left);
+  pyramid_ = left;
+  Detect(images.left);
+  return MatchStereo(images.stamp, right);
+}
+
+std::vector<cv::Point2f> StereoTracker::points_px() const {
+  std::vector<cv::Point2f> points;
+  for (const Tracked& t : tracked_) points.push_back(t.raw);
+  return points;
+}
+
+void StereoTracker::FollowInTime(const std::vector<cv::Mat>& pyramid) {
+  std::vector<cv::Point2f> from;
+  std::vector<cv::Point2f> to;
+  for (const Tracked& t : tracked_) {
+    from.push_back(t.raw);
+    to.push_back(t.raw + t.flow);
+  }
+  const std::vector<bool> ok = FollowBothWays(pyramid_, pyramid, from, to, options_);
+  std::vector<Tracked> kept;
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    if (!ok[i]) continue;
+    Tracked t = tracked_[i];
+    t.flow = to[i] - from[i];
+    t.raw = to[i];
+    t.has_flow = true;
+    kept.push_back(t);
+  }
+  tracked_ = std::move(kept);
+}
+
+// Fills the grid's empty places with the strongest corners, cell by cell.
+void StereoTracker::Detect(const cv::Mat& left) {
+  const int cells = options_.grid_columns * options_.grid_rows;
+  const int per_cell = (options_.max_features + cells - 1) / cells;
+  const auto cell_of = [&](const cv::Point2f& p) {
+    const int column = std::min(static_cast<int>(p.x * options_.grid_columns / left.cols),
+                                options_.grid_columns - 1);
+    const int row =
+        std::min(static_cast<int>(p.y * options_.grid_rows / left.rows), options_.grid_rows - 1);
+    return row * options_.grid_columns + column;
+  };
+  std::vector<int> filled(static_cast<std::size_t>(cells), 0);
+  cv::Mat mask(left.size(), CV_8UC1, cv::Scalar(255));
+  for (const Tracked& t : tracked_) {
+    ++filled[static_cast<std::size_t>(cell_of(t.raw))];
+    cv::circle(mask, t.raw, options_.min_distance_px, cv::Scalar(0), cv::FILLED);
+  }
+  if (static_cast<int>(tracked_.size()) >= options_.max_features) return;
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(left, corners, 4 * options_.max_features, options_.corner_quality,
+                          options_.min_distance_px, mask, 5);
+  std::vector<cv::Point2f> fresh;
+  for (const cv::Point2f& corner : corners) {
+    int& count = filled[static_cast<std::size_t>(cell_of(corner))];
+    if (count >= per_cell) continue;
+    if (static_cast<int>(tracked_.size() + fresh.size()) >= options_.max_features) break;
+    ++count;
+    fresh.push_back(corner);
+  }
+  for (const cv::Point2f& p : fresh) tracked_.push_back({.id = next_id_++, .raw = p});
+}
+
+StereoFeatures StereoTracker::MatchStereo(TimeNs stamp, const std::vector<cv::Mat>& right) {
+  std::vector<cv::Point2f> in_left;
+  std::vector<cv::Point2f> in_right;
+  for (const Tracked& t : tracked_) {
+    in_left.push_back(t.raw);
+    in_right.push_back(t.raw - cv::Point2f(t.disparity, 0.0F));
+  }
+  const std::vector<bool> ok = FollowBothWays(pyramid_, right, in_left, in_right, options_);
+  const std::vector<cv::Point2f> rectified_left = rectifier_.RectifyLeft(in_left);
+  const std::vector<cv::Point2f> rectified_right = rectifier_.RectifyRight(in_right);
+  StereoFeatures features{.stamp = stamp};
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    const cv::Point2f l = rectified_left[i];
+    const cv::Point2f r = rectified_right[i];
+    FeatureObservation observation{.id = tracked_[i].id, .uv_left_px = {l.x, l.y}};
+    // Far points may come out slightly behind infinity; the noise of a match decides how much.
+    const bool plausible = l.x - r.x > -options_.epipolar_px &&
+                           l.x - r.x < options_.max_disparity_px &&
+                           std::abs(l.y - r.y) < options_.epipolar_px;
+    if (ok[i] && plausible) {
+      observation.u_right_px = r.x;
+      tracked_[i].disparity = in_left[i].x - in_right[i].x;
+    }
+    features.features.push_back(observation);
+  }
+  return features;
+}
+
+}  // namespace polnav::nav

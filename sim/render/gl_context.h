@@ -1,0 +1,56 @@
+// Where does OpenGL come from without a display?
+//
+// OSMesa's llvmpipe: OpenGL 3.3 core, rasterized in the calling thread, so that the bytes depend
+// neither on the number of cores nor on who else is drawing. All contexts of one process share a
+// rasterizer behind a lock: renderers in several threads are correct, but take turns.
+#pragma once
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/osmesa.h>
+
+#include <memory>
+#include <vector>
+
+namespace polnav::sim {
+
+#define POLNAV_GL_FUNCTIONS(X)                                                                     \
+  X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer)            \
+  X(BindTexture) X(BindVertexArray) X(BufferData) X(CheckFramebufferStatus)     \
+  X(Clear) X(CompileShader) X(CreateProgram) X(CreateShader)            \
+  X(CullFace) X(DepthFunc) X(Disable) X(DrawElements)       \
+  X(Enable) X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FrontFace) X(GenBuffers)       \
+  X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) X(GenerateMipmap)       \
+  X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv)              \
+  X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(ReadPixels) X(RenderbufferStorage)         \
+  X(ShaderSource) X(TexImage2D) X(TexParameterf)                 \
+  X(TexParameteri) X(Uniform1f) X(UniformMatrix4fv) X(UseProgram)        \
+  X(VertexAttribPointer) X(Viewport)
+
+// gl.Clear(...) is glClear(...).
+struct GlFunctions {
+#define POLNAV_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
+  POLNAV_GL_FUNCTIONS(POLNAV_GL_MEMBER)
+#undef POLNAV_GL_MEMBER
+};
+
+class GlContext {
+ public:
+  GlContext();
+
+  // Everything after this call in this thread goes to this context.
+  void MakeCurrent();
+
+  [[nodiscard]] const GlFunctions& gl() const { return gl_; }
+  // Vertex and fragment source to a linked program.
+  [[nodiscard]] GLuint LinkProgram(const char* vertex_source, const char* fragment_source) const;
+
+ private:
+  struct Destroy {
+    void operator()(osmesa_context* context) const { OSMesaDestroyContext(context); }
+  };
+  std::unique_ptr<osmesa_context, Destroy> context_;
+  std::vector<unsigned char> surface_;  // OSMesa wants one; we draw into framebuffer objects
+  GlFunctions gl_;
+};
+
+}  // namespace polnav::sim

@@ -1,0 +1,39 @@
+// What does an ideal pinhole camera see?
+//
+// Off-screen OpenGL 3.3 core through OSMesa (llvmpipe): grey, linear light. One renderer is one
+// context: create it and use it in one thread only. The same call gives the same bytes in any
+// thread and any process of one machine; another processor may round shades differently.
+// Points between 0.2 m and 600 m before the camera are drawn. No shadows, no motion blur.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "nav/api/geometry.h"
+#include "sim/render/pinhole_view.h"
+#include "sim/world/scene.h"
+#include "sky/skylight.h"
+
+namespace polnav::sim {
+
+class Renderer {
+ public:
+  // The scene is copied into the context: it need not outlive the constructor.
+  // unneeded_px: corners of triangles whose pixels nobody will look at, left black and not paid for.
+  Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
+           const std::vector<Eigen::Vector2d>& unneeded_px = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // Grey image CV_8UC1 of height x width. 255 is radiance 1 / exposure; the clear zenith has 1.
+  void Render(const nav::Pose& T_WC, double exposure, cv::Mat& image);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace polnav::sim

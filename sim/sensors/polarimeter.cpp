@@ -1,0 +1,37 @@
+#include "sim/sensors/polarimeter.h"
+
+#include "sim/sensors/rotation.h"
+
+namespace polnav::sim {
+
+nav::PolarimeterCalibration NominalPolarimeter(const PolarimeterOptions& options) {
+  return {.T_BS = {Eigen::Quaterniond::Identity(), options.position_m},
+          .fov_rad = nav::DegToRad(options.fov_deg)};
+}
+
+Polarimeter::Polarimeter(const PolarimeterOptions& options, const sky::WorldSky& sky,
+                         std::uint64_t seed, std::uint64_t trial)
+    : options_(options), sky_(&sky), noise_(seed, trial, "polarimeter") {
+  RandomStream::Sample draw = RandomStream(seed, trial, "polarimeter/instrument").At(0);
+  optics_.fov_rad = nav::DegToRad(options.fov_deg);
+  optics_.exposure = options.exposure;
+  for (std::size_t i = 0; i < optics_.gain.size(); ++i) {
+    optics_.gain[i] = 1.0 + options.gain_sigma * draw.Gaussian();
+    optics_.angle_error_rad[i] = nav::DegToRad(options.polarizer_angle_sigma_deg) * draw.Gaussian();
+  }
+  q_BS_ = RotationOf(nav::DegToRad(options.mount_error_sigma_deg) * GaussianVector(draw));
+}
+
+nav::PolarizationSample Polarimeter::Sample(const Truth& truth, std::uint64_t index) const {
+  const sky::SixChannels reading =
+      sky::ReadSixChannels(optics_, truth.T_WB.q * q_BS_, truth.T_WB * options_.position_m,
+                           nav::ToSeconds(truth.stamp), *sky_);
+  RandomStream::Sample draw = noise_.At(index);
+  sky::SixChannels normals{};
+  for (double& normal : normals) {
+    normal = draw.Gaussian();
+  }
+  return {truth.stamp, sky::Digitize(reading, normals, options_.channel_sigma, options_.bits)};
+}
+
+}  // namespace polnav::sim

@@ -1,0 +1,70 @@
+// How is the stereo camera built and mounted, and how well is it calibrated?
+#pragma once
+
+#include <Eigen/Core>
+
+namespace polnav::sim {
+
+// What separates the estimator's calibration from the truth; one sigma each.
+struct StereoCalibrationErrorOptions {
+  double focal_sigma_px = 0.15;   // common to x and y, each camera its own
+  double center_sigma_px = 0.3;
+  double distortion_sigma = 0.001;            // of k1 and k2; of p1 and p2 a tenth
+  double relative_rotation_sigma_deg = 0.01;  // right to left camera, each axis
+  double baseline_sigma_m = 0.0001;
+  double mount_rotation_sigma_deg = 0.1;      // both cameras to the body, each axis
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("focal_sigma_px", focal_sigma_px, {.min = 0.0, .max = 50.0});
+    v("center_sigma_px", center_sigma_px, {.min = 0.0, .max = 50.0});
+    v("distortion_sigma", distortion_sigma, {.min = 0.0, .max = 0.1});
+    v("relative_rotation_sigma_deg", relative_rotation_sigma_deg, {.min = 0.0, .max = 5.0});
+    v("baseline_sigma_m", baseline_sigma_m, {.min = 0.0, .max = 0.1});
+    v("mount_rotation_sigma_deg", mount_rotation_sigma_deg, {.min = 0.0, .max = 10.0});
+  }
+};
+
+// YAML keys = field names.
+struct StereoCameraOptions {
+  double rate_hz = 10.0;
+  int width_px = 672;
+  int height_px = 376;
+  double focal_px = 350.0;  // shorter sees more, and less of each thing
+  double baseline_m = 0.12;
+  double k1 = -0.17;
+  double k2 = 0.025;
+  double p1 = 0.0003;
+  double p2 = -0.0002;
+  Eigen::Vector3d position_m = {0.2, 0.06, 1.2};  // of the left camera in B
+  double pitch_down_deg = 5.0;
+  // Grey value per radiance of the clear zenith, over 255. Zero: fixed once, so that views to all
+  // four sides from the world's origin have a mean of target_mean; the sky may saturate.
+  double exposure = 0.0;
+  double target_mean = 110.0;
+  double full_well_e = 6000.0;  // electrons at grey 255; fewer give more shot noise
+  double read_noise_e = 6.0;
+  StereoCalibrationErrorOptions calibration_error;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("rate_hz", rate_hz, {.min = 0.1, .max = 120.0});
+    v("width_px", width_px, {.min = 32, .max = 2048});
+    v("height_px", height_px, {.min = 32, .max = 2048});
+    v("focal_px", focal_px, {.min = 16.0, .max = 4000.0});
+    v("baseline_m", baseline_m, {.min = 0.01, .max = 2.0});
+    v("k1", k1, {.min = -0.3, .max = 0.5});
+    v("k2", k2, {.min = -0.2, .max = 0.5});
+    v("p1", p1, {.min = -0.01, .max = 0.01});
+    v("p2", p2, {.min = -0.01, .max = 0.01});
+    v("position_m", position_m, {.min = -10.0, .max = 10.0});
+    v("pitch_down_deg", pitch_down_deg, {.min = -90.0, .max = 90.0});
+    v("exposure", exposure, {.min = 0.0, .max = 1000.0});
+    v("target_mean", target_mean, {.min = 5.0, .max = 250.0});
+    v("full_well_e", full_well_e, {.min = 10.0, .max = 1e6});
+    v("read_noise_e", read_noise_e, {.min = 0.0, .max = 1000.0});
+    v("calibration_error", calibration_error);
+  }
+};
+
+}  // namespace polnav::sim

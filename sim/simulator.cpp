@@ -1,0 +1,107 @@
+#include "sim/simulator.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/random.h"
+
+namespace polnav::sim {
+namespace {
+
+constexpr double kTruthRateWithoutCameras_hz = 10.0;
+
+// A seed for a part of the world that takes one number.
+std::uint64_t SeedOf(const RunKey& key, std::string_view part) {
+  RandomStream::Sample sample = RandomStream(key.seed, key.trial, part).At(0);
+  const std::uint64_t high = sample.Bits();
+  return high << 32U | sample.Bits();
+}
+
+nav::TimeNs PeriodOf(double rate_hz) { return nav::FromSeconds(1.0 / rate_hz); }
+
+}  // namespace
+
+bool IsSampleRate(double rate_hz) {
+  const nav::TimeNs period = PeriodOf(rate_hz);
+  return period > 0 && period % Car::kStep == 0;
+}
+
+nav::Rig NominalRig(const SensorOptions& sensors) {
+  nav::Rig rig;
+  if (sensors.stereo) rig.stereo = NominalStereo(*sensors.stereo);
+  if (sensors.polarimeter) rig.polarimeter = NominalPolarimeter(*sensors.polarimeter);
+  if (sensors.imu) rig.imu = NominalImu(*sensors.imu);
+  return rig;
+}
+
+Simulator::Simulator(const SimulatorOptions& options, const RunKey& key) {
+  const auto utc = sky::ParseUtc(options.site.utc);
+  if (!utc) throw std::logic_error("Simulator: site.utc is no date: " + options.site.utc);
+  track_ = std::make_unique<Track>(options.world.track);
+  terrain_ =
+      std::make_unique<Terrain>(options.world.terrain, *track_, SeedOf(key, "world/terrain"));
+  sky_ = std::make_unique<sky::WorldSky>(
+      options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"));
+  car_ = std::make_unique<Car>(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
+  if (options.sensors.stereo) {
+    scene_ = BuildPlaza(options.world.plaza, *track_, *terrain_, SeedOf(key, "world/plaza"));
+  }
+  EquipVehicle(options.sensors, key);
+}
+
+Simulator::Clock Simulator::ClockOf(double rate_hz) {
+  if (!IsSampleRate(rate_hz)) {
+    throw std::logic_error("Simulator: a sensor's period must be a multiple of the physics step");
+  }
+  return {.period = PeriodOf(rate_hz)};
+}
+
+void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
+  truth_clock_ = ClockOf(sensors.stereo ? sensors.stereo->rate_hz : kTruthRateWithoutCameras_hz);
+  if (sensors.imu) {
+    imu_clock_ = ClockOf(sensors.imu->rate_hz);
+    imu_.emplace(*sensors.imu, key.seed, key.trial);
+  }
+  if (sensors.polarimeter) {
+    polarimeter_clock_ = ClockOf(sensors.polarimeter->rate_hz);
+    polarimeter_.emplace(*sensors.polarimeter, *sky_, key.seed, key.trial);
+  }
+  if (sensors.reference) {
+    reference_clock_ = ClockOf(sensors.reference->rate_hz);
+    reference_.emplace(*sensors.reference, key.seed, key.trial);
+  }
+  if (sensors.stereo) {
+    stereo_clock_ = ClockOf(sensors.stereo->rate_hz);
+    true_stereo_ = DrawTrueStereo(*sensors.stereo, key.seed, key.trial);
+  }
+}
+
+std::vector<Simulator::Emission> Simulator::Step() {
+  const Truth& now = car_->truth();
+  std::vector<Emission> due;
+  if (truth_clock_.Due(now.stamp)) {
+    due.emplace_back(now);
+    ++truth_clock_.index;
+  }
+  if (imu_ && imu_clock_.Due(now.stamp)) {
+    // A reading is a mean over the interval before it: there is none at time zero.
+    if (imu_clock_.index > 0) {
+      due.emplace_back(imu_->Sample(imu_interval_begin_, now, imu_clock_.index - 1));
+    }
+    imu_interval_begin_ = now;
+    ++imu_clock_.index;
+  }
+  if (polarimeter_ && polarimeter_clock_.Due(now.stamp)) {
+    due.emplace_back(polarimeter_->Sample(now, polarimeter_clock_.index++));
+  }
+  if (reference_ && reference_clock_.Due(now.stamp)) {
+    due.emplace_back(reference_->Sample(now, reference_clock_.index++));
+  }
+  if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
+    due.emplace_back(FrameRequest{now.stamp, stereo_clock_.index++, now.T_WB});
+  }
+  car_->Step();
+  return due;
+}
+
+}  // namespace polnav::sim

@@ -1,0 +1,138 @@
+// What does the vehicle feel, second by second?
+//
+// Owns the clock and the seed: builds the world, steps the vehicle, and samples every sensor that
+// the vehicle carries at its own rate. Pictures are only asked for here (FrameRequest) and taken by
+// whoever has a camera (measurement_stream.h), since they cost a thousand times more than the rest.
+// (options, seed, trial) fixes every byte; leaving a sensor out leaves the others as they are.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "nav/api/calibration.h"
+#include "nav/api/measurements.h"
+#include "sim/sensors/imu.h"
+#include "sim/sensors/polarimeter.h"
+#include "sim/sensors/reference.h"
+#include "sim/sensors/stereo_camera.h"
+#include "sim/truth.h"
+#include "sim/vehicle/car.h"
+#include "sim/world/plaza.h"
+#include "sim/world/terrain.h"
+#include "sim/world/track.h"
+#include "sky/skylight.h"
+#include "sky/sun.h"
+
+namespace polnav::sim {
+
+struct WorldOptions {
+  TerrainOptions terrain;
+  TrackOptions track;
+  PlazaOptions plaza;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("terrain", terrain);
+    v("track", track);
+    v("plaza", plaza);
+  }
+};
+
+// Absent: the vehicle does not carry it.
+struct SensorOptions {
+  std::optional<StereoCameraOptions> stereo;
+  std::optional<ImuOptions> imu;
+  std::optional<PolarimeterOptions> polarimeter;
+  std::optional<ReferenceOptions> reference;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("stereo", stereo);
+    v("imu", imu);
+    v("polarimeter", polarimeter);
+    v("reference", reference);
+  }
+};
+
+struct SimulatorOptions {
+  sky::SiteOptions site;
+  sky::SkyOptions sky;
+  WorldOptions world;
+  CarOptions vehicle;
+  SensorOptions sensors;
+};
+
+// Which run of a scenario: everything random depends on these two and nothing else.
+struct RunKey {
+  std::uint64_t seed = 1;
+  std::uint64_t trial = 0;
+};
+
+// A picture to be taken: everything it depends on besides the world.
+struct FrameRequest {
+  nav::TimeNs stamp = 0;
+  std::uint64_t index = 0;
+  nav::Pose T_WB;
+};
+
+// True: a sensor of this rate can be sampled at whole physics steps.
+[[nodiscard]] bool IsSampleRate(double rate_hz);
+
+// What the estimators are told about the sensors.
+[[nodiscard]] nav::Rig NominalRig(const SensorOptions& sensors);
+
+class Simulator {
+ public:
+  // Throws std::logic_error when a rate is none of IsSampleRate's or the date is none.
+  Simulator(const SimulatorOptions& options, const RunKey& key);
+
+  using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
+                                FrameRequest>;
+
+  // What falls due at the current instant, in a fixed order, the truth (at the cameras' rate, or
+  // 10 Hz without cameras) first; then one physics step. The first call is at time zero.
+  [[nodiscard]] std::vector<Emission> Step();
+
+  [[nodiscard]] const Truth& truth() const { return car_->truth(); }
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const sky::WorldSky& sky() const { return *sky_; }
+  // Only for taking pictures: the cameras as they really are. Absent without cameras.
+  [[nodiscard]] const std::optional<nav::StereoCalibration>& true_stereo() const {
+    return true_stereo_;
+  }
+
+ private:
+  // When a sensor is due next.
+  struct Clock {
+    nav::TimeNs period = 0;
+    std::uint64_t index = 0;
+    [[nodiscard]] bool Due(nav::TimeNs stamp) const {
+      return stamp == static_cast<nav::TimeNs>(index) * period;
+    }
+  };
+
+  [[nodiscard]] static Clock ClockOf(double rate_hz);
+  void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
+
+  std::unique_ptr<Track> track_;
+  std::unique_ptr<Terrain> terrain_;
+  std::unique_ptr<sky::WorldSky> sky_;
+  Scene scene_;
+  std::unique_ptr<Car> car_;
+
+  Clock truth_clock_;
+  Clock imu_clock_;
+  Clock polarimeter_clock_;
+  Clock reference_clock_;
+  Clock stereo_clock_;
+  std::optional<Imu> imu_;
+  std::optional<Polarimeter> polarimeter_;
+  std::optional<Reference> reference_;
+  std::optional<nav::StereoCalibration> true_stereo_;
+  Truth imu_interval_begin_;
+};
+
+}  // namespace polnav::sim

@@ -1,0 +1,38 @@
+#include "sim/world/plaza.h"
+
+#include <opencv2/core.hpp>
+
+#include "sim/world/ground.h"
+#include "sim/world/houses.h"
+#include "sim/world/scene_builder.h"
+#include "sim/world/street_frame.h"
+#include "sim/world/street_things.h"
+
+namespace polnav::sim {
+namespace {
+
+// Pulls every texture, and the shades between vertices, towards their mean.
+void ScaleContrast(double contrast, Scene& scene) {
+  if (contrast == 1.0) return;
+  for (cv::Mat& texture : scene.textures) {
+    const double mean = cv::mean(texture)[0];
+    texture.convertTo(texture, CV_8UC1, contrast, (1.0 - contrast) * mean);
+  }
+}
+
+}  // namespace
+
+Scene BuildPlaza(const PlazaOptions& options, const Track& track, const Terrain& terrain,
+                 std::uint64_t seed) {
+  const StreetFrame street(track, terrain);
+  SceneBuilder builder;
+  AddGround(street, seed, builder);
+  AddHouses(options, street, seed, builder);
+  AddTrees(options.tree_count, street, seed, builder);
+  AddStreetThings(options, street, seed, builder);
+  Scene scene = builder.Take();
+  ScaleContrast(options.texture_contrast, scene);
+  return scene;
+}
+
+}  // namespace polnav::sim

@@ -1,0 +1,84 @@
+#include "sky/polarimeter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace polnav::sky {
+
+namespace {
+
+using std::numbers::pi;
+
+// Gauss-Legendre on [0, 1], three nodes.
+constexpr std::array<double, 3> kNodes = {0.11270166537925831, 0.5, 0.88729833462074169};
+constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+constexpr int kAzimuths = 12;
+
+// Stokes parameters [I, Q, U] of one ray, about the axes of S carried to the ray.
+Eigen::Vector3d LookFrom(const Eigen::Quaterniond& q_WS, const Eigen::Vector3d& ray_S,
+                         const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
+  const Eigen::Quaterniond q_SP =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray_S);
+  const Eigen::Quaterniond q_WP = q_WS * q_SP;
+  const Eigen::Vector3d x_W = q_WP * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d y_W = q_WP * Eigen::Vector3d::UnitY();
+  const Skylight light = sky.Look((q_WP * Eigen::Vector3d::UnitZ()).normalized(), observer_W, t_s);
+  // The E-vector is an axis: its tensor q (a1 a1 - a2 a2) + u (a1 a2 + a2 a1), read along x and y.
+  const double x1 = x_W.dot(light.axis1_W);
+  const double x2 = x_W.dot(light.axis2_W);
+  const double y1 = y_W.dot(light.axis1_W);
+  const double y2 = y_W.dot(light.axis2_W);
+  const double q = light.q * (x1 * x1 - x2 * x2) + 2.0 * light.u * x1 * x2;
+  const double u = light.q * (x1 * y1 - x2 * y2) + light.u * (x1 * y2 + x2 * y1);
+  return light.radiance * Eigen::Vector3d(1.0, q, u);
+}
+
+}  // namespace
+
+ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
+                          const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
+  if (!(fov_rad >= 0.0 && fov_rad <= pi)) {
+    throw std::logic_error("AverageOverCone: the cone is not between 0 and pi wide");
+  }
+  const double depth = 1.0 - std::cos(0.5 * fov_rad);  // of the cap on the unit sphere
+  Eigen::Vector3d stokes = Eigen::Vector3d::Zero();
+  for (std::size_t ring = 0; ring < kNodes.size(); ++ring) {
+    const double cosine = 1.0 - depth * kNodes[ring];  // equal steps of it are equal solid angles
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * pi * k / kAzimuths;
+      const Eigen::Vector3d ray_S(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, t_s, sky);
+    }
+  }
+  return {stokes[0], stokes[1] / stokes[0], stokes[2] / stokes[0]};
+}
+
+SixChannels ReadSixChannels(const SixChannelOptics& optics, const Eigen::Quaterniond& q_WS,
+                            const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
+  const ConeLight light = AverageOverCone(optics.fov_rad, q_WS, observer_W, t_s, sky);
+  SixChannels reading{};
+  for (std::size_t i = 0; i < reading.size(); ++i) {
+    const double alpha = kPolarizerAngles_rad[i] + optics.angle_error_rad[i];
+    const double passed = 1.0 + light.q * std::cos(2.0 * alpha) + light.u * std::sin(2.0 * alpha);
+    reading[i] = optics.gain[i] * optics.exposure * light.i * passed + optics.offset[i];
+  }
+  return reading;
+}
+
+SixChannels Digitize(const SixChannels& reading, const SixChannels& normals, double relative_sigma,
+                     int bits) {
+  if (bits < 1 || bits > 32) {
+    throw std::logic_error("Digitize: no converter of so many bits");
+  }
+  const double top = std::ldexp(1.0, bits) - 1.0;
+  SixChannels out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double noisy = reading[i] * (1.0 + relative_sigma * normals[i]);
+    out[i] = std::round(std::clamp(noisy, 0.0, 1.0) * top) / top;
+  }
+  return out;
+}
+
+}  // namespace polnav::sky

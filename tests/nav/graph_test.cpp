@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "nav/graph/bundle_adjustment.h"
+#include "nav/graph/edges.h"
+#include "nav/graph/marginalization.h"
+#include "tests/nav/synthetic_street.h"
+
+namespace polnav::nav {
+namespace {
+
+constexpr double kStep = 1e-6;
+
+TEST(HeadingEdge, JacobianAgreesWithFiniteDifferences) {
+  const Pose pose{ExpRotation({0.05, -0.08, 1.9}), {1, 2, 3}};
+  const HeadingEdge edge{.heading_rad = 0.1, .sigma_rad = 0.02};
+  const HeadingResidual e = EvaluateHeading(edge, pose);
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
+    const double difference = (EvaluateHeading(edge, Perturb(pose, d)).residual -
+                               EvaluateHeading(edge, Perturb(pose, -d)).residual) / (2.0 * kStep);
+    EXPECT_NEAR(difference, e.by_pose(k), 1e-6) << k;
+  }
+}
+
+TEST(HeadingEdge, ALevelTurnToTheRightRaisesTheHeading) {
+  const Pose north{LevelAttitude(0.0), Eigen::Vector3d::Zero()};
+  const Pose east{LevelAttitude(0.5 * M_PI), Eigen::Vector3d::Zero()};
+  const HeadingEdge edge{.heading_rad = 0.0, .sigma_rad = 1.0};
+  EXPECT_NEAR(EvaluateHeading(edge, north).residual, 0.0, 1e-12);
+  EXPECT_NEAR(EvaluateHeading(edge, east).residual, -0.5 * M_PI, 1e-12);
+}
+
+TEST(LevelEdge, JacobianAgreesWithFiniteDifferences) {
+  const Pose pose{ExpRotation({0.05, -0.08, 1.9}), {1, 2, 3}};
+  const LevelEdge edge{.up_B = Eigen::Vector3d(0.02, -0.03, 1.0).normalized(), .sigma_rad = 0.005};
+  const LevelResidual e = EvaluateLevel(edge, pose);
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
+    const Eigen::Vector2d difference = (EvaluateLevel(edge, Perturb(pose, d)).residual -
+                                        EvaluateLevel(edge, Perturb(pose, -d)).residual) /
+                                       (2.0 * kStep);
+    EXPECT_LT((difference - e.by_pose.col(k)).norm(), 1e-6) << k;
+  }
+}
+
+TEST(InverseLeftJacobian, IsTheDerivativeOfTheRotationVector) {
+  const Eigen::Vector3d theta(0.3, -0.5, 0.7);
+  const Eigen::Matrix3d J = InverseLeftJacobian(theta);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(k);
+    const Eigen::Vector3d difference = (LogRotation(ExpRotation(d) * ExpRotation(theta)) -
+                                        LogRotation(ExpRotation(-d) * ExpRotation(theta))) /
+                                       (2.0 * kStep);
+    EXPECT_LT((difference - J.col(k)).norm(), 1e-8);
+  }
+}
+
+// A window of keyframes on a street, each point seen from all keyframes that can.
+struct StreetWindow {
+  RectifiedCamera camera = StereoRectifier(TestCalibration()).camera();
+  SyntheticStreet street{camera, 60.0, 1};
+  BundleAdjustmentOptions options{.sigmas = {0.2, 0.2}, .huber_sigmas = 1e6, .max_iterations = 50};
+  Window window;
+
+  StreetWindow(int keyframes, double noise_px) {
+    Matrix6d start = Matrix6d::Identity() * 1e-6;
+    for (int k = 0; k < keyframes; ++k) {
+      const Pose pose = street.PoseAt(1.2 * k);
+      Add(pose, street.See(pose, FromSeconds(0.2 * k), noise_px));
+    }
+    window.prior = PriorFromCovariance(window.keyframes.front().T_WB, start);
+  }
+
+  void Add(const Pose& pose, const StereoFeatures& seen) {
+    const std::uint64_t id = window.keyframes.empty() ? 0 : window.keyframes.back().id + 1;
+    window.keyframes.push_back({.id = id, .stamp = seen.stamp, .T_WB = pose});
+    for (const FeatureObservation& f : seen.features) {
+      const StereoPixel pixel{f.uv_left_px, f.uv_left_px.x() - *f.u_right_px};
+      const auto [it, fresh] = window.landmarks.try_emplace(f.id);
+      if (fresh) it->second = {.host = id, .coordinates = LandmarkOf(camera, pixel)};
+      it->second.sightings.push_back({id, pixel});
+    }
+  }
+};
+
+TEST(BundleAdjustment, RecoversDisturbedPosesFromExactSightings) {
+  StreetWindow s(6, 0.0);
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<Pose> truth;
+  for (Keyframe& k : s.window.keyframes) truth.push_back(k.T_WB);
+  for (std::size_t i = 1; i < s.window.keyframes.size(); ++i) {
+    Eigen::Matrix<double, 6, 1> d;
+    for (int k = 0; k < 6; ++k) d(k) = noise(random);
+    s.window.keyframes[i].T_WB = Perturb(truth[i], d);
+  }
+  ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    // The function tolerance of 1e-4 ends the iteration some way before zero.
+    EXPECT_LT(Difference(s.window.keyframes[i].T_WB, truth[i]).norm(), 1e-4) << i;
+  }
+}
+
+TEST(BundleAdjustment, AHeadingEdgeTurnsTheWindowByItsWeight) {
+  StreetWindow s(4, 0.0);
+  Matrix6d start = Matrix6d::Identity() * 1e-6;
+  const double sigma = 0.01;
+  start(5, 5) = sigma * sigma;
+  s.window.prior = PriorFromCovariance(s.window.keyframes.front().T_WB, start);
+  Keyframe& first = s.window.keyframes.front();
+  const double before = CompassHeading(first.T_WB.q);
+  first.heading = {.heading_rad = before + 0.004, .sigma_rad = sigma};
+  ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
+  // Prior and edge are equally sure: the result lies half way.
+  EXPECT_NEAR(WrapPi(CompassHeading(first.T_WB.q) - before), 0.002, 2e-5);
+}
+
+TEST(BundleAdjustment, OutliersAreRemovedAndNothingElse) {
+  StreetWindow s(4, 0.0);
+  const std::size_t before = s.window.landmarks.size();
+  auto& victim = s.window.landmarks.begin()->second;
+  victim.sightings.front().pixel.uv_px.x() += 30.0;
+  const auto removed = RemoveOutliers(s.camera, s.options.sigmas, 3.0, s.window);
+  ASSERT_EQ(removed.size(), 1U);
+  EXPECT_EQ(s.window.landmarks.size(), before - 1);
+}
+
+// What is kept about a keyframe must equal what solving with it would have said: to first order
+// the covariance of the newest pose is the same before and after.
+TEST(Marginalization, KeepsTheNewestPosesCovariance) {
+  StreetWindow s(6, 0.1);
+  ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
+  const Matrix6d before = NewestCovariance(s.camera, s.options, s.window);
+  MarginalizeOldest(s.camera, s.options, s.window);
+  const Matrix6d after = NewestCovariance(s.camera, s.options, s.window);
+  EXPECT_LT((after - before).norm(), 1e-6 * before.norm());
+}
+
+TEST(Marginalization, LeavesTheOptimumWhereItWas) {
+  StreetWindow s(6, 0.1);
+  ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
+  const Pose before = s.window.keyframes.back().T_WB;
+  MarginalizeOldest(s.camera, s.options, s.window);
+  ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
+  const auto moved = Difference(s.window.keyframes.back().T_WB, before);
+  // Far below one sigma of the newest pose (about 5 mm and 0.2 mrad).
+  EXPECT_LT(moved.head<3>().norm(), 5e-4);
+  EXPECT_LT(moved.tail<3>().norm(), 2e-5);
+}
+
+}  // namespace
+}  // namespace polnav::nav

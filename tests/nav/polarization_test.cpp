@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "nav/polarization/heading_fusion.h"
+#include "nav/polarization/six_channel.h"
+#include "nav/polarization/sky_heading.h"
+#include "nav/stereo/reprojection.h"
+
+namespace polnav::nav {
+namespace {
+
+// [Zeng2020, eq. 2] with its factor 2 mended.
+PolarizationSample Channels(double intensity, double dop, double phi) {
+  constexpr std::array<double, 6> kAnglesDeg = {0, 90, 60, 150, 120, 210};
+  PolarizationSample sample;
+  for (std::size_t i = 0; i < 6; ++i) {
+    sample.channel[i] =
+        intensity * (1.0 + dop * std::cos(2.0 * phi - 2.0 * DegToRad(kAnglesDeg[i])));
+  }
+  return sample;
+}
+
+TEST(SixChannel, InvertsTheForwardModelForEveryAngle) {
+  for (double phi = -1.5; phi < 1.6; phi += 0.05) {
+    const auto light = DecodeSixChannels(Channels(0.3, 0.45, phi));
+    ASSERT_TRUE(light);
+    EXPECT_NEAR(light->dop, 0.45, 1e-12);
+    EXPECT_NEAR(WrapHalfPi(light->axis_rad - phi), 0.0, 1e-12);
+    EXPECT_NEAR(light->pair_sum, 0.0, 1e-12);
+  }
+}
+
+TEST(SixChannel, ADeadChannelShowsInThePairSum) {
+  PolarizationSample sample = Channels(0.3, 0.45, 0.2);
+  sample.channel[2] = 0.0;
+  const auto light = DecodeSixChannels(sample);
+  ASSERT_TRUE(light);
+  EXPECT_GT(std::abs(light->pair_sum), 0.3);
+}
+
+TEST(SixChannel, DarknessIsNoAnswer) {
+  EXPECT_FALSE(DecodeSixChannels(Channels(0.0, 0.5, 0.2)));
+}
+
+Eigen::Vector3d Sun(double azimuth, double elevation) {
+  return {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
+          std::sin(elevation)};
+}
+
+// E-vector of a Rayleigh sky along the body's z axis, in B.
+Eigen::Vector3d ZenithEVector(const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& sun_W) {
+  return q_WB.conjugate() * sun_W.cross(q_WB * Eigen::Vector3d::UnitZ()).normalized();
+}
+
+TEST(SkyHeading, IsExactForEveryHeadingSunAzimuthAndTilt) {
+  const Eigen::Vector3d tilt(0.03, -0.05, 0.0);
+  for (double azimuth = 0.0; azimuth < 6.2; azimuth += 0.31) {
+    const Eigen::Vector3d sun = Sun(azimuth, 0.29);
+    for (double heading = -3.1; heading < 3.2; heading += 0.31) {
+      const Eigen::Quaterniond truth = LevelAttitude(heading) * ExpRotation(tilt);
+      // The guess is off by 0.5 rad in heading, with the right pitch and roll.
+      const Eigen::Quaterniond guess = ExpRotation({0.0, 0.0, 0.5}) * truth;
+      const auto found = HeadingFromEVector(ZenithEVector(truth, sun), guess, sun);
+      ASSERT_TRUE(found);
+      EXPECT_NEAR(WrapPi(*found - CompassHeading(truth)), 0.0, 1e-9);
+    }
+  }
+}
+
+// [Chu2021, eq. 8] psi = alpha + f_s + pi/2 with alpha counted clockwise as headings are.
+TEST(SkyHeading, AgreesWithChu2021WhenLevel) {
+  const double sun_azimuth = DegToRad(230.09);
+  const Eigen::Vector3d sun = Sun(sun_azimuth, DegToRad(16.5));
+  const double heading = DegToRad(77.0);
+  const Eigen::Vector3d e_B = ZenithEVector(LevelAttitude(heading), sun);
+  const double alpha_left = std::atan2(e_B.y(), e_B.x());  // counter-clockwise from body x
+  EXPECT_NEAR(WrapHalfPi(alpha_left + sun_azimuth + 0.5 * M_PI - heading), 0.0, 1e-12);
+}
+
+TEST(SkyHeading, TheSignOfTheEVectorMeansNothing) {
+  const Eigen::Vector3d sun = Sun(1.0, 0.3);
+  const Eigen::Quaterniond q = LevelAttitude(2.0) * ExpRotation({0.02, 0.04, 0.0});
+  const Eigen::Vector3d e = ZenithEVector(q, sun);
+  EXPECT_NEAR(*HeadingFromEVector(e, q, sun), *HeadingFromEVector(-e, q, sun), 1e-12);
+}
+
+// Readings every 50 ms of a standing vehicle whose heading vision believes to be off by 0.01 rad.
+TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
+  const Eigen::Vector3d sun = Sun(2.0, 0.3);
+  PolarizationOptions options{.reading_sigma_deg = 1.0, .correlated_sigma_deg = 0.0};
+  HeadingFusion fusion(options, {}, [&](TimeNs) { return sun; });
+  const Eigen::Quaterniond truth = LevelAttitude(0.7);
+  const Eigen::Quaterniond believed = LevelAttitude(0.71);
+  const Eigen::Vector3d e = ZenithEVector(truth, sun);
+  for (int i = 1; i <= 4; ++i) {
+    PolarizationSample sample = Channels(0.3, 0.5, std::atan2(e.y(), e.x()));
+    sample.stamp = i * kNsPerSecond / 20;
+    EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
+  }
+  fusion.Advance(0, believed, kNsPerSecond / 5, believed, 0.01);
+  const auto edge = fusion.TakeEdge(kNsPerSecond / 5, believed);
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR(edge->heading_rad, 0.7, 1e-9);
+  EXPECT_NEAR(edge->sigma_rad, DegToRad(1.0) / 2.0, 1e-12);
+  EXPECT_FALSE(fusion.TakeEdge(kNsPerSecond / 5, believed)) << "no reading is used twice";
+}
+
+TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
+  const Eigen::Vector3d sun = Sun(2.0, 0.3);
+  HeadingFusion fusion({}, {}, [&](TimeNs) { return sun; });
+  const Eigen::Vector3d e = ZenithEVector(LevelAttitude(0.7), sun);
+  ASSERT_EQ(fusion.Add(Channels(0.3, 0.5, std::atan2(e.y(), e.x()))), Outcome::kUsed);
+  fusion.Advance(0, LevelAttitude(1.2), 0, LevelAttitude(1.2), 1e-6);
+  EXPECT_EQ(fusion.gated(), 1);
+  EXPECT_FALSE(fusion.TakeEdge(0, LevelAttitude(1.2)));
+}
+
+TEST(HeadingFusion, UnpolarizedLightIsUnusable) {
+  HeadingFusion fusion({}, {}, [](TimeNs) { return Eigen::Vector3d::UnitX(); });
+  EXPECT_EQ(fusion.Add(Channels(0.3, 0.02, 0.4)), Outcome::kUnusable);
+}
+
+}  // namespace
+}  // namespace polnav::nav

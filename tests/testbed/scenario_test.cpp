@@ -1,0 +1,112 @@
+// Scenario files: what reads, reads back, and what cannot make sense is refused before simulating.
+#include "tools/testbed/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/testbed/example_run.h"
+#include "tools/testbed/input_error.h"
+
+namespace polnav::testbed {
+namespace {
+
+std::string ErrorOf(const std::string& text, const std::vector<std::string>& set = {}) {
+  std::vector<ScenarioOverride> overrides;
+  for (const std::string& s : set) overrides.push_back({s, "--set " + s});
+  try {
+    (void)ParseScenario(text, "s.yaml", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string ErrorWith(const std::string& set) { return ErrorOf(ExampleScenarioYaml(), {set}); }
+
+TEST(Scenario, ReadsTheExample) {
+  const Scenario s = ParseScenario(ExampleScenarioYaml(), "s.yaml");
+  EXPECT_EQ(s.name, "example");
+  EXPECT_EQ(s.seed, 42U);
+  EXPECT_EQ(s.paper, std::vector<std::string>{"Chu2021"});
+  EXPECT_EQ(s.site.utc, "2020-11-11T07:00:00Z");
+  EXPECT_TRUE(s.sensors.stereo.has_value());
+  EXPECT_FALSE(s.sensors.reference.has_value());
+  EXPECT_EQ(s.criteria.size(), 2U);
+  EXPECT_EQ(s.criteria[0].at_most, 1.0);
+  EXPECT_FALSE(s.criteria[1].at_most.has_value());
+}
+
+TEST(Scenario, ReadsBackFromItsResolvedForm) {
+  const Scenario s = ParseScenario(ExampleScenarioYaml(), "s.yaml");
+  const std::string resolved = ResolvedYaml(s);
+  EXPECT_EQ(ResolvedYaml(ParseScenario(resolved, "resolved.yaml")), resolved);
+  EXPECT_NE(resolved.find("latitude_deg: 38.832"), std::string::npos);
+}
+
+TEST(Scenario, KeepsSeveralLinesOfDescription) {
+  Scenario s = ParseScenario(ExampleScenarioYaml(), "s.yaml");
+  s.description = "two lines: of text\nand # the second\n";
+  EXPECT_EQ(ParseScenario(ResolvedYaml(s), "r.yaml").description, s.description);
+}
+
+TEST(Scenario, RefusesAnEstimatorWithoutItsSensors) {
+  EXPECT_EQ(ErrorOf("name: a\nestimators:\n  start: {}\n  run: [stereo]\n"),
+            "s.yaml:4: estimators.run: 'stereo' needs cameras, but sensors.stereo is off");
+  EXPECT_EQ(ErrorWith("sensors.polarimeter=null"),
+            "s.yaml:15: estimators.run: 'stereo_polarization' needs a polarimeter, but "
+            "sensors.polarimeter is off");
+}
+
+TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
+  EXPECT_EQ(ErrorWith("estimators.run=[sterio]"),
+            "--set estimators.run=[sterio]: estimators.run: 'sterio' is not one of: stereo, "
+            "stereo_polarization; did you mean 'stereo'?");
+  EXPECT_EQ(ErrorWith("estimators.run=[stereo, stereo]"),
+            "--set estimators.run=[stereo, stereo]: estimators.run: 'stereo' is listed twice");
+}
+
+TEST(Scenario, RefusesDurationsThatAreNotWholeMilliseconds) {
+  EXPECT_EQ(ErrorWith("duration_s=1.0005"),
+            "--set duration_s=1.0005: duration_s: 1.0005 s is not a whole number of milliseconds");
+  EXPECT_EQ(ErrorWith("duration_s=0"),
+            "--set duration_s=0: duration_s: 0 is out of range, [0.001, 86400]");
+  EXPECT_EQ(ErrorWith("duration_s=0.3"), "no error");
+}
+
+TEST(Scenario, RefusesWhatCannotBeSimulated) {
+  EXPECT_EQ(ErrorOf("duration_s: 5\n"), "s.yaml: name: a scenario needs a name");
+  EXPECT_EQ(ErrorWith("site.utc=yesterday"),
+            "--set site.utc=yesterday: site.utc: 'yesterday' is no date like "
+            "2020-11-11T07:00:00Z");
+  EXPECT_EQ(ErrorWith("sensors.imu.rate_hz=333"),
+            "--set sensors.imu.rate_hz=333: sensors.imu.rate_hz: 333 Hz does not fit whole steps "
+            "of the simulation");
+}
+
+TEST(Scenario, RefusesCriteriaThatCannotBeJudged) {
+  EXPECT_EQ(ErrorWith("criteria.0.metric=estimators.stereo.heading_deg.rmes"),
+            "--set criteria.0.metric=estimators.stereo.heading_deg.rmes: criteria.0.metric: "
+            "'estimators.stereo.heading_deg.rmes' is no metric of a run; did you mean "
+            "'estimators.stereo.heading_deg.rmse'? (polnav list shows all)");
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n  - name: c\n    metric: wall_s\n"),
+            "s.yaml:3: criteria.0: a criterion needs at_most, at_least or below");
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n  - {name: c, at_most: 1}\n"),
+            "s.yaml:3: criteria.0: a criterion needs a metric");
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n  - {metric: wall_s, at_most: 1}\n"),
+            "s.yaml:3: criteria.0: a criterion needs a name");
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n"
+                    "  - {name: c, metric: estimators.stereo.ate_m.rmse, at_most: 1}\n"),
+            "s.yaml:3: criteria.0.metric: estimator 'stereo' is not in estimators.run");
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n  - {name: c, metric: wall_s, at_most: 1}\n"
+                    "  - {name: c, metric: wall_s, at_most: 2}\n"),
+            "s.yaml:4: criteria.1.name: 'c' is given twice");
+}
+
+TEST(Scenario, AcceptsMetricsThatTheRunNames) {
+  EXPECT_EQ(ErrorOf("name: a\ncriteria:\n"
+                    "  - {name: c, metric: timing_ms.render.p99, at_most: 1}\n"
+                    "  - {name: d, metric: streams.imu.count, at_least: 1}\n"),
+            "no error");
+}
+
+}  // namespace
+}  // namespace polnav::testbed

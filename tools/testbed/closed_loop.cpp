@@ -1,0 +1,199 @@
+#include "tools/testbed/closed_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "nav/stereo/estimator.h"
+#include "nav/stereo/tracker.h"
+#include "sim/measurement_stream.h"
+#include "sim/random.h"
+#include "tools/testbed/memory_use.h"
+#include "tools/testbed/polarization_readings.h"
+#include "tools/testbed/stream_hash.h"
+
+namespace polnav::testbed {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double MsSince(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+// The estimators' sun: from the place and date they are told, not from the simulator.
+nav::SunModel SunFor(const sky::SiteOptions& site) {
+  const auto utc = sky::ParseUtc(site.utc);
+  if (!utc) throw std::logic_error("RunClosedLoop: site.utc is no date: " + site.utc);
+  const sky::SunArc arc = sky::ComputeSunArc(sky::SiteOf(site), *utc);
+  return [arc](nav::TimeNs stamp) { return arc.At(nav::ToSeconds(stamp)); };
+}
+
+// What the scenario grants: the true start, blurred by the sigmas that it states.
+nav::StartPrior GrantStart(const StartOptions& start, const sim::Truth& truth,
+                           const RunOptions& options) {
+  sim::RandomStream::Sample draw =
+      sim::RandomStream(options.seed, options.trial, "estimators/start").At(0);
+  nav::StartPrior prior{.position_sigma_m = start.position_sigma_m,
+                        .heading_sigma_rad = nav::DegToRad(start.heading_sigma_deg),
+                        .level_sigma_rad = nav::DegToRad(start.level_sigma_deg)};
+  prior.heading_rad =
+      nav::CompassHeading(truth.T_WB.q) + prior.heading_sigma_rad * draw.Gaussian();
+  for (int i = 0; i < 3; ++i) {
+    prior.p_WB_m(i) = truth.T_WB.p(i) + prior.position_sigma_m * draw.Gaussian();
+  }
+  return prior;
+}
+
+struct RunningEstimator {
+  EstimatorRun run;
+  nav::StereoEstimator estimator;
+};
+
+nav::StereoEstimator MakeEstimator(const std::string& name, const Scenario& scenario,
+                                   const nav::Rig& rig, const nav::StartPrior& start) {
+  std::optional<nav::HeadingFusion> polarization;
+  if (name == "stereo_polarization") {
+    polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),
+                         SunFor(scenario.site));
+  }
+  return {scenario.estimators.stereo, rig.stereo.value(), start, std::move(polarization)};
+}
+
+// The corners that the front end follows.
+cv::Mat DrawFeatures(const cv::Mat& image, const std::vector<cv::Point2f>& points) {
+  cv::Mat drawn;
+  cv::cvtColor(image, drawn, cv::COLOR_GRAY2BGR);
+  for (const cv::Point2f& p : points) {
+    cv::circle(drawn, p, 3, cv::Scalar(60, 220, 60), 1, cv::LINE_AA);
+  }
+  return drawn;
+}
+
+class Loop {
+ public:
+  Loop(const Scenario& scenario, const RunOptions& options)
+      : scenario_(scenario),
+        options_(options),
+        rig_(sim::NominalRig(scenario.sensors)),
+        duration_(nav::FromSeconds(scenario.duration_s)),
+        readings_(rig_.polarimeter, SunFor(scenario.site)) {
+    if (rig_.stereo) tracker_.emplace(scenario.estimators.stereo.tracker, *rig_.stereo);
+  }
+
+  RunRecord Run(const std::function<void(double)>& progress) {
+    const auto begin = Clock::now();
+    sim::MeasurementStream stream(
+        {scenario_.site, scenario_.sky, scenario_.world, scenario_.vehicle, scenario_.sensors},
+        {options_.seed, options_.trial}, duration_, options_.render_threads);
+    while (const auto item = stream.Next()) {
+      if (const auto* truth = std::get_if<sim::Truth>(&*item)) {
+        Take(*truth);
+        if (progress) progress(nav::ToSeconds(truth->stamp) / scenario_.duration_s);
+      } else {
+        Take(std::get<nav::Measurement>(*item));
+      }
+    }
+    Finish(stream.render_ms());
+    record_.wall_s = MsSince(begin) * 1e-3;
+    return std::move(record_);
+  }
+
+ private:
+  void Take(const sim::Truth& truth) {
+    if (record_.truth.empty()) StartEstimators(truth);
+    record_.truth.push_back(truth);
+    HashTruth(truth, hashes_["truth"]);
+    ++record_.streams["truth"].count;
+    // A hundred looks at the memory over the run.
+    const double due = scenario_.duration_s * static_cast<double>(record_.rss_mb.size()) / 100.0;
+    if (nav::ToSeconds(truth.stamp) >= due) record_.rss_mb.push_back(ResidentMemoryMb());
+  }
+
+  void StartEstimators(const sim::Truth& truth) {
+    const nav::StartPrior start = GrantStart(scenario_.estimators.start, truth, options_);
+    for (const std::string& name : scenario_.estimators.run) {
+      estimators_.push_back({{.name = name}, MakeEstimator(name, scenario_, rig_, start)});
+    }
+  }
+
+  void Take(const nav::Measurement& measurement) {
+    const auto begin = Clock::now();
+    const std::string stream = StreamName(measurement);
+    HashMeasurement(measurement, hashes_[stream]);
+    ++record_.streams[stream].count;
+    if (const auto* images = std::get_if<nav::StereoImages>(&measurement)) {
+      record_.timing["hash"].ms.push_back(MsSince(begin));
+      TakeImages(*images);
+      return;
+    }
+    if (const auto* light = std::get_if<nav::PolarizationSample>(&measurement)) {
+      readings_.Add(*light);
+    }
+    for (RunningEstimator& e : estimators_) Feed(measurement, e);
+  }
+
+  // The front end works once for all estimators: it does not depend on what they believe.
+  void TakeImages(const nav::StereoImages& images) {
+    if (estimators_.empty()) return;
+    const auto begin = Clock::now();
+    const nav::Measurement features = tracker_->Track(images);
+    record_.timing["front_end"].ms.push_back(MsSince(begin));
+    KeepSampleImage(images);
+    for (RunningEstimator& e : estimators_) {
+      const auto estimator_begin = Clock::now();
+      Feed(features, e);
+      record_.timing[e.run.name].ms.push_back(MsSince(estimator_begin));
+    }
+  }
+
+  static void Feed(const nav::Measurement& measurement, RunningEstimator& e) {
+    const nav::Report report = e.estimator.Process(measurement);
+    e.run.counts.Add(report);
+    if (report.estimate) e.run.estimates.push_back(*report.estimate);
+  }
+
+  // Four views spread over the run.
+  void KeepSampleImage(const nav::StereoImages& images) {
+    constexpr nav::TimeNs kCount = 4;
+    const auto kept = static_cast<nav::TimeNs>(record_.images.size());
+    if (kept >= kCount || images.stamp < duration_ * (2 * kept + 1) / (2 * kCount)) return;
+    record_.images.push_back({.title = "left camera and what the front end follows",
+                              .stamp = images.stamp,
+                              .image = DrawFeatures(images.left, tracker_->points_px())});
+  }
+
+  void Finish(const std::vector<double>& render_ms) {
+    for (auto& [name, hash] : hashes_) record_.streams[name].sha256 = hash.HexDigest();
+    if (!render_ms.empty()) record_.timing["render"].ms = render_ms;
+    for (RunningEstimator& e : estimators_) {
+      e.run.sha256 = HashOf(e.run.estimates);
+      record_.estimators.push_back(std::move(e.run));
+    }
+    record_.polarization_readings = readings_.ErrorsAgainst(record_.truth);
+    record_.sim_duration_s = scenario_.duration_s;
+    record_.peak_rss_mb = PeakMemoryMb();
+  }
+
+  const Scenario& scenario_;
+  RunOptions options_;
+  nav::Rig rig_;
+  nav::TimeNs duration_;
+  PolarizationReadings readings_;
+  std::optional<nav::StereoTracker> tracker_;
+  std::vector<RunningEstimator> estimators_;
+  std::map<std::string, Sha256> hashes_;
+  RunRecord record_;
+};
+
+}  // namespace
+
+RunRecord RunClosedLoop(const Scenario& scenario, const RunOptions& options,
+                        const std::function<void(double fraction)>& progress) {
+  return Loop(scenario, options).Run(progress);
+}
+
+}  // namespace polnav::testbed

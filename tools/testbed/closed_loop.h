@@ -1,0 +1,26 @@
+// What happens when the simulated vehicle drives and the estimators listen?
+//
+// One run: simulate, hand each measurement to every estimator in order of simulated arrival, keep
+// what they answer. (scenario, seed, trial) fixes every byte of the record except wall times and
+// memory, whatever the number of render threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "tools/testbed/run_record.h"
+#include "tools/testbed/scenario.h"
+
+namespace polnav::testbed {
+
+struct RunOptions {
+  std::uint64_t seed = 1;
+  std::uint64_t trial = 0;
+  int render_threads = 1;
+};
+
+// progress: called now and then with the simulated fraction of the run, 0 to 1; may be empty.
+[[nodiscard]] RunRecord RunClosedLoop(const Scenario& scenario, const RunOptions& options,
+                                      const std::function<void(double fraction)>& progress);
+
+}  // namespace polnav::testbed

@@ -1,0 +1,117 @@
+#include "tools/testbed/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "tools/testbed/estimators.h"
+#include "tools/testbed/yaml_document.h"
+
+namespace polnav::testbed {
+namespace {
+
+constexpr std::array<std::string_view, 4> kRunMetrics{"sim_duration_s", "wall_s",
+                                                      "real_time_factor", "peak_rss_mb"};
+
+std::vector<std::string> Split(const std::string& path) {
+  std::vector<std::string> parts;
+  std::stringstream stream(path);
+  for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+Json ToJson(const std::optional<RpeScore>& rpe) {
+  if (!rpe) return nullptr;
+  return {{"trans_m", ToJson(rpe->trans_m)}, {"rot_deg", ToJson(rpe->rot_deg)}};
+}
+
+void Flatten(const Json& tree, const std::string& path, std::vector<std::string>& paths) {
+  if (!tree.is_object()) {
+    paths.push_back(path);
+    return;
+  }
+  for (const auto& [key, item] : tree.items()) Flatten(item, JoinKey(path, key), paths);
+}
+
+}  // namespace
+
+Json ToJson(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
+          {"min", s.min},   {"max", s.max},   {"sse", s.sse},       {"count", s.count}};
+}
+
+Json ToJson(const HeadingScore& h) {
+  return {
+      {"mean_abs", h.mean_abs}, {"mean", h.mean}, {"rmse", h.rmse}, {"std", h.std}, {"max", h.max}};
+}
+
+Json ToJson(const EstimatorScore& score) {
+  Json json;
+  json["ate_m"] = score.ate_m ? ToJson(*score.ate_m) : Json(nullptr);
+  json["rpe_1m"] = ToJson(score.rpe_1m);
+  json["rpe_100m"] = ToJson(score.rpe_100m);
+  json["heading_deg"] = ToJson(score.heading_deg);
+  json["position_m"] = ToJson(score.position_m.error);
+  json["position_m"]["horizontal_rmse"] = score.position_m.horizontal_rmse;
+  json["drift_percent"] = score.drift_percent ? Json(*score.drift_percent) : Json(nullptr);
+  json["nees"] = nullptr;
+  if (score.nees) {
+    json["nees"] = {{"position", score.nees->position},
+                    {"heading", score.nees->heading},
+                    {"heading_within_3_sigma", score.nees->heading_within_3_sigma}};
+  }
+  json["tracked_fraction"] = score.tracked_fraction;
+  return json;
+}
+
+std::vector<std::string> EstimatorMetrics() {
+  EstimatorScore full;
+  full.ate_m.emplace();
+  full.rpe_1m.emplace();
+  full.rpe_100m.emplace();
+  full.drift_percent.emplace();
+  full.nees.emplace();
+  std::vector<std::string> paths;
+  Flatten(ToJson(full), "", paths);
+  return paths;
+}
+
+std::vector<std::string> AllMetrics() {
+  std::vector<std::string> paths(kRunMetrics.begin(), kRunMetrics.end());
+  for (const EstimatorInfo& info : kEstimators) {
+    for (const std::string& metric : EstimatorMetrics()) {
+      paths.push_back("estimators." + std::string(info.name) + "." + metric);
+    }
+  }
+  return paths;
+}
+
+bool IsMetric(const std::string& path) {
+  const std::vector<std::string> parts = Split(path);
+  if (parts.size() == 3 && parts[0] == "streams") return parts[2] == "count";
+  if (parts.size() == 3 && parts[0] == "timing_ms") {
+    return parts[2] == "median" || parts[2] == "p99";
+  }
+  const std::vector<std::string> all = AllMetrics();
+  return std::find(all.begin(), all.end(), path) != all.end();
+}
+
+std::string EstimatorOfMetric(const std::string& path) {
+  const std::vector<std::string> parts = Split(path);
+  return parts.size() > 1 && parts[0] == "estimators" ? parts[1] : "";
+}
+
+std::optional<double> MetricAt(const Json& result, const std::string& path) {
+  const Json* node = &result;
+  for (const std::string& part : Split(path)) {
+    if (!node->is_object() || !node->contains(part)) return std::nullopt;
+    node = &(*node)[part];
+  }
+  if (!node->is_number()) return std::nullopt;
+  const double value = node->get<double>();
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace polnav::testbed

@@ -1,0 +1,12 @@
+// What does every report carry along? Chart.js, and our own style and script.
+#pragma once
+
+#include <string_view>
+
+namespace polnav::testbed {
+
+[[nodiscard]] std::string_view ChartJs();
+[[nodiscard]] std::string_view ReportCss();
+[[nodiscard]] std::string_view ReportJs();
+
+}  // namespace polnav::testbed

@@ -1,0 +1,11 @@
+// What do the report's charts draw? One object, thinned, in metres, degrees and seconds.
+#pragma once
+
+#include "tools/testbed/option_tree.h"
+#include "tools/testbed/run_record.h"
+
+namespace polnav::testbed {
+
+[[nodiscard]] Json ChartData(const RunRecord& record);
+
+}  // namespace polnav::testbed

@@ -1,0 +1,113 @@
+// The numbers: errors beside the paper's, consistency, criteria.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "tools/testbed/metrics.h"
+#include "tools/testbed/paper_tables.h"
+#include "tools/testbed/report/sections.h"
+
+namespace polnav::testbed {
+namespace {
+
+std::string Number(const Json& tree, const std::string& path, int digits) {
+  const std::optional<double> value = MetricAt(tree, path);
+  return value ? fmt::format("{:.{}f}", *value, digits) : "–";
+}
+
+// How much smaller (-) or larger (+) than the first row of the same origin.
+std::string Change(std::optional<double> value, std::optional<double> base) {
+  if (!value || !base || *base <= 0.0) return "–";
+  return fmt::format("{:+.1f} %", 100.0 * (*value / *base - 1.0));
+}
+
+std::string ErrorTable(const Json& result, const std::string& errors, const std::string& mean,
+                       std::span<const PaperRow> paper) {
+  HtmlTable table{.rows = {{"", "max", "mean", "RMSE", "std", "RMSE change"}}};
+  std::optional<double> base;
+  bool first = true;
+  for (const auto& [name, scores] : result["estimators"].items()) {
+    const std::optional<double> rmse = MetricAt(scores, errors + ".rmse");
+    if (first) base = rmse;
+    table.rows.push_back({name, Number(scores, errors + ".max", 3),
+                          Number(scores, errors + "." + mean, 3),
+                          Number(scores, errors + ".rmse", 3), Number(scores, errors + ".std", 3),
+                          first ? "" : Change(rmse, base)});
+    table.row_class.emplace_back("");
+    first = false;
+  }
+  for (const PaperRow& row : paper) {
+    const auto fixed = [](double v) { return fmt::format("{:.2f}", v); };
+    const bool is_base = row.label == paper.front().label;
+    table.rows.push_back({fmt::format("{}: {}", kChu2021, row.label), fixed(row.max),
+                          fixed(row.mean), fixed(row.rmse), fixed(row.std),
+                          is_base ? "" : Change(row.rmse, paper.front().rmse)});
+    table.row_class.emplace_back("paper");
+  }
+  return table.Html();
+}
+
+std::string DetailTable(const Json& result) {
+  HtmlTable table{
+      .rows = {{"", "ATE rmse [m]", "RPE 1 m [m]", "RPE 1 m [°]", "RPE 100 m [m]", "drift [%]",
+                "NEES position (3)", "NEES heading (1)", "within 3σ", "tracked", "keyframes"}}};
+  for (const auto& [name, s] : result["estimators"].items()) {
+    table.rows.push_back(
+        {name, Number(s, "ate_m.rmse", 3), Number(s, "rpe_1m.trans_m.mean", 4),
+         Number(s, "rpe_1m.rot_deg.mean", 4), Number(s, "rpe_100m.trans_m.mean", 3),
+         Number(s, "drift_percent", 3), Number(s, "nees.position", 2), Number(s, "nees.heading", 2),
+         Number(s, "nees.heading_within_3_sigma", 3), Number(s, "tracked_fraction", 3),
+         Number(s, "measurements.keyframes", 0)});
+  }
+  return table.Html();
+}
+
+}  // namespace
+
+std::string ErrorSections(const ReportInput& input) {
+  if (input.result["estimators"].empty()) return "";
+  const auto& papers = input.scenario.paper;
+  const bool chu = std::find(papers.begin(), papers.end(), kChu2021) != papers.end();
+  std::span<const PaperRow> heading;
+  std::span<const PaperRow> position;
+  if (chu) {
+    heading = kChu2021Heading_deg;
+    position = kChu2021Position_m;
+  }
+  const std::string note =
+      chu ? "<p class=\"soft small\">Rows in italics are the paper's, measured with its hardware; "
+            "all others come from this run. Mean is of the magnitude; "
+            "change is against stereo alone.</p>"
+          : "<p class=\"soft small\">Mean is of the magnitude.</p>";
+  return "<div class=\"columns\"><section><h2>Heading error [°]</h2>" +
+         ErrorTable(input.result, "heading_deg", "mean_abs", heading) + note +
+         "</section><section><h2>Position error [m]</h2>" +
+         ErrorTable(input.result, "position_m", "mean", position) +
+         "<p class=\"soft small\">Without any alignment: where the estimator believed to be.</p>"
+         "</section></div><section><h2>Trajectory and consistency</h2>" +
+         DetailTable(input.result) +
+         "<p class=\"soft small\">ATE after SE(3) alignment; RPE: mean over consecutive pairs by "
+         "distance travelled (evo's definitions). NEES in brackets: what an honest covariance "
+         "gives.</p></section>";
+}
+
+std::string CriteriaSection(const ReportInput& input) {
+  if (input.criteria.empty()) return "";
+  std::string rows;
+  for (const CriterionResult& c : input.criteria) {
+    const char* verdict = c.verdict == Verdict::kPassed   ? "pass"
+                          : c.verdict == Verdict::kFailed ? "fail"
+                                                          : "skip";
+    rows += fmt::format(
+        "<tr><td class=\"text\">{}</td><td class=\"text\"><code>{}</code></td><td>{}</td>"
+        "<td class=\"{}\"><b>{}</b></td></tr>",
+        EscapeMarkup(c.name), EscapeMarkup(c.expected),
+        c.actual ? fmt::format("{:.6g}", *c.actual) : "–", verdict, verdict);
+  }
+  return "<section><h2>Criteria</h2><div class=\"scroll\"><table><thead><tr><th>criterion</th>"
+         "<th class=\"text\">expected</th><th>actual</th><th>verdict</th></tr></thead><tbody>" +
+         rows + "</tbody></table></div></section>";
+}
+
+}  // namespace polnav::testbed

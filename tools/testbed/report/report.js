@@ -1,0 +1,139 @@
+// Draws the charts of a run from the object `run` that the report carries.
+"use strict";
+(function () {
+  const charts = [];
+  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const faint = (name, alpha) => color(name) + Math.round(255 * alpha).toString(16).padStart(2, "0");
+  const wholeRun = { min: 0, max: run.end_s };
+  const slot = (i) => "--c" + (i % 4);
+  const points = (x, y) => x.map((t, i) => ({ x: t, y: y[i] }));
+
+  function axis(title, limits) {
+    return Object.assign({
+      type: "linear",
+      title: { display: true, text: title, color: color("--soft") },
+      ticks: { color: color("--soft"), maxRotation: 0, includeBounds: false },
+      grid: { color: color("--grid") },
+    }, limits);
+  }
+
+  function line(label, data, stroke, extra) {
+    return Object.assign({
+      label, data, borderColor: stroke, backgroundColor: stroke, borderWidth: 1.5, pointRadius: 0,
+      pointHitRadius: 4, tension: 0, fill: false,
+    }, extra);
+  }
+
+  function draw(id, datasets, x, y, extra) {
+    const canvas = document.getElementById(id);
+    if (!canvas) return;
+    charts.push(new Chart(canvas, {
+      type: "line",
+      data: { datasets },
+      options: {
+        animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
+        interaction: { mode: "nearest", intersect: false },
+        scales: { x: axis(x, extra && extra.x), y: axis(y, extra && extra.y) },
+        plugins: {
+          legend: {
+            labels: {
+              color: color("--ink"), boxWidth: 14, boxHeight: 3,
+              filter: (item, data) => !data.datasets[item.datasetIndex].band,
+            },
+          },
+        },
+      },
+      plugins: (extra && extra.plugins) || [],
+    }));
+  }
+
+  // One metre is as long on both axes.
+  const equalAxes = {
+    id: "equalAxes",
+    afterLayout(chart) {
+      const area = chart.chartArea;
+      const box = chart.extent;
+      const scale = Math.max((box.x1 - box.x0) / area.width, (box.y1 - box.y0) / area.height) * 1.06;
+      const cx = (box.x0 + box.x1) / 2, cy = (box.y0 + box.y1) / 2;
+      const want = {
+        x: [cx - scale * area.width / 2, cx + scale * area.width / 2],
+        y: [cy - scale * area.height / 2, cy + scale * area.height / 2],
+      };
+      let changed = false;
+      for (const k of ["x", "y"]) {
+        const options = chart.options.scales[k];
+        if (Math.abs((options.min ?? 1e9) - want[k][0]) > 1e-3 * scale * area.width) changed = true;
+        options.min = want[k][0];
+        options.max = want[k][1];
+      }
+      if (changed) setTimeout(() => chart.update("none"), 0);
+    },
+    beforeInit(chart) {
+      const all = chart.data.datasets.flatMap((d) => d.data).filter((p) => p.x !== null);
+      const xs = all.map((p) => p.x), ys = all.map((p) => p.y);
+      chart.extent = {
+        x0: Math.min(...xs), x1: Math.max(...xs, Math.min(...xs) + 1),
+        y0: Math.min(...ys), y1: Math.max(...ys, Math.min(...ys) + 1),
+      };
+    },
+  };
+
+  function drawTrajectory() {
+    const sets = [line("truth", points(run.truth.x, run.truth.y), color("--truth"),
+                       { borderDash: [6, 4], borderWidth: 1.5, order: -1 })];
+    run.estimators.forEach((e, i) =>
+      sets.push(line(e.name, points(e.path.x, e.path.y), color(slot(i)))));
+    draw("trajectory", sets, "east [m]", "north [m]", { plugins: [equalAxes] });
+  }
+
+  function drawHeading() {
+    const sets = [];
+    let top = 0;
+    run.estimators.forEach((e, i) => {
+      const worst = Math.max(...e.heading.error.map(Math.abs));
+      const sigma = e.heading.sigma.filter((s) => s !== null).sort((a, b) => a - b);
+      // A band that runs away must not flatten the errors.
+      const band = sigma.length ? 3 * sigma[Math.floor(0.95 * (sigma.length - 1))] : 0;
+      top = Math.max(top, 1.1 * worst, Math.min(1.1 * band, 3 * worst));
+      sets.push(line(e.name, points(e.heading.t, e.heading.error), color(slot(i))));
+      const bound = (sign) =>
+        points(e.heading.t, e.heading.sigma.map((s) => (s === null ? null : sign * 3 * s)));
+      sets.push(line("", bound(1), "transparent",
+                     { fill: "+1", backgroundColor: faint(slot(i), 0.16), band: true, borderWidth: 0 }));
+      sets.push(line("", bound(-1), "transparent", { band: true, borderWidth: 0 }));
+    });
+    if (top === 0) top = 1;
+    draw("heading", sets, "time [s]", "heading error [\u00b0]",
+         { y: { min: -top, max: top }, x: wholeRun });
+  }
+
+  function drawPosition() {
+    const sets = run.estimators.map((e, i) =>
+      line(e.name, points(e.position.t, e.position.error), color(slot(i))));
+    draw("position", sets, "time [s]", "position error [m]", { y: { beginAtZero: true }, x: wholeRun });
+  }
+
+  function drawReadings() {
+    const sets = [line("one reading of the polarimeter", points(run.readings.t, run.readings.error),
+                       color("--paper"),
+                       { showLine: false, pointRadius: 1.4, borderWidth: 0 })];
+    draw("readings", sets, "time [s]", "heading error [\u00b0]", { x: wholeRun });
+  }
+
+  function drawMemory() {
+    draw("memory", [line("resident memory", points(run.memory.t, run.memory.mb), color("--c2"))],
+         "time [s]", "MB", { y: { beginAtZero: true }, x: wholeRun });
+  }
+
+  function drawAll() {
+    charts.splice(0).forEach((chart) => chart.destroy());
+    drawTrajectory();
+    drawHeading();
+    drawPosition();
+    drawReadings();
+    drawMemory();
+  }
+
+  drawAll();
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawAll);
+})();

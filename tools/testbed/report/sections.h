@@ -1,0 +1,28 @@
+// How does each part of the report read? HTML fragments; text from outside is escaped here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/testbed/report.h"
+
+namespace polnav::testbed {
+
+[[nodiscard]] std::string HeaderSection(const ReportInput& input);
+[[nodiscard]] std::string ChartSections(const ReportInput& input);
+[[nodiscard]] std::string ErrorSections(const ReportInput& input);
+[[nodiscard]] std::string CriteriaSection(const ReportInput& input);
+[[nodiscard]] std::string PictureSection(const ReportInput& input);
+[[nodiscard]] std::string TimingAndStreamSections(const ReportInput& input);
+[[nodiscard]] std::string AgainSection(const ReportInput& input);  // how to run it again
+
+// Cells are escaped; the first row is the header. row_class: of each row after it, may be short.
+struct HtmlTable {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row_class;
+  bool text_columns = false;  // left-aligned, wrapping
+
+  [[nodiscard]] std::string Html() const;
+};
+
+}  // namespace polnav::testbed

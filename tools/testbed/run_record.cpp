@@ -1,0 +1,31 @@
+#include "tools/testbed/run_record.h"
+
+#include "tools/testbed/hash.h"
+
+namespace polnav::testbed {
+
+void OutcomeCounts::Add(const nav::Report& report) {
+  used += report.outcome == nav::Outcome::kUsed ? 1 : 0;
+  gated += report.outcome == nav::Outcome::kGated ? 1 : 0;
+  unusable += report.outcome == nav::Outcome::kUnusable ? 1 : 0;
+  ignored += report.outcome == nav::Outcome::kIgnored ? 1 : 0;
+  keyframes += static_cast<std::uint64_t>(report.keyframes);
+  features += static_cast<std::uint64_t>(report.features);
+  inliers += static_cast<std::uint64_t>(report.inliers);
+  flow_rejected += static_cast<std::uint64_t>(report.flow_rejected);
+}
+
+std::string HashOf(const std::vector<nav::Estimate>& estimates) {
+  Sha256 hash;
+  for (const nav::Estimate& e : estimates) {
+    // Field by field: the padding of a struct is not part of the answer.
+    hash.UpdateValue(e.stamp);
+    hash.Update(e.T_WB.q.coeffs().data(), 4 * sizeof(double));
+    hash.Update(e.T_WB.p.data(), 3 * sizeof(double));
+    hash.Update(e.covariance.data(), 36 * sizeof(double));
+    hash.UpdateValue(e.tracked);
+  }
+  return hash.HexDigest();
+}
+
+}  // namespace polnav::testbed

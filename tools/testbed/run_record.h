@@ -1,0 +1,78 @@
+// What came out of one closed-loop run, before anybody judges it?
+//
+// Filled by the closed loop; read by the score, result.json and the report. Wall times are for
+// reporting only.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "nav/api/estimate.h"
+#include "nav/api/time.h"
+#include "sim/truth.h"
+
+namespace polnav::testbed {
+
+// What became of the measurements that an estimator was given.
+struct OutcomeCounts {
+  std::uint64_t used = 0;
+  std::uint64_t gated = 0;
+  std::uint64_t unusable = 0;
+  std::uint64_t ignored = 0;
+  std::uint64_t keyframes = 0;
+  std::uint64_t features = 0;  // offered
+  std::uint64_t inliers = 0;
+  std::uint64_t flow_rejected = 0;  // moved otherwise than the scene [Chu2021, eq. 12]
+
+  void Add(const nav::Report& report);
+};
+
+struct EstimatorRun {
+  std::string name;
+  std::vector<nav::Estimate> estimates;  // in order of stamps
+  std::string sha256;                    // of the estimates
+  OutcomeCounts counts;
+};
+
+struct StreamRecord {
+  std::uint64_t count = 0;
+  std::string sha256;
+};
+
+struct StageTiming {
+  std::vector<double> ms;  // one entry a call
+};
+
+// As the sensor delivered it, CV_8UC1 or CV_8UC3.
+struct SampleImage {
+  std::string title;
+  nav::TimeNs stamp = 0;
+  cv::Mat image;
+};
+
+// The heading that one polarization sample alone would give, against the truth.
+struct HeadingReading {
+  double t_s = 0.0;
+  double error_rad = 0.0;
+};
+
+struct RunRecord {
+  std::vector<sim::Truth> truth;  // at the cameras' rate
+  std::vector<EstimatorRun> estimators;
+  std::map<std::string, StreamRecord> streams;
+  std::map<std::string, StageTiming> timing;
+  std::vector<SampleImage> images;
+  std::vector<HeadingReading> polarization_readings;
+  double sim_duration_s = 0.0;
+  double wall_s = 0.0;
+  double peak_rss_mb = 0.0;
+  std::vector<double> rss_mb;  // at equal intervals over the run
+};
+
+// SHA-256 over every byte of every estimate, in order.
+[[nodiscard]] std::string HashOf(const std::vector<nav::Estimate>& estimates);
+
+}  // namespace polnav::testbed

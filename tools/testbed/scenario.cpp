@@ -1,0 +1,137 @@
+#include "tools/testbed/scenario.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/testbed/estimators.h"
+#include "tools/testbed/metrics.h"
+#include "tools/testbed/option_loader.h"
+#include "tools/testbed/option_tree.h"
+#include "tools/testbed/yaml_document.h"
+
+namespace polnav::testbed {
+namespace {
+
+void CheckBasics(const YamlDocument& document, const Scenario& scenario) {
+  if (scenario.name.empty()) FailAt(document, "name", "a scenario needs a name");
+  const double ms = scenario.duration_s * 1000.0;
+  // Decimal milliseconds are not exact in binary; anything a person means is far from 1e-6 ms.
+  if (std::abs(ms - std::round(ms)) > 1e-6) {
+    FailAt(document, "duration_s",
+           fmt::format("{} s is not a whole number of milliseconds", scenario.duration_s));
+  }
+  if (!sky::ParseUtc(scenario.site.utc)) {
+    FailAt(document, "site.utc",
+           fmt::format("'{}' is no date like 2020-11-11T07:00:00Z", scenario.site.utc));
+  }
+}
+
+void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors) {
+  const auto check = [&](const char* sensor, const auto& options) {
+    if (!options || sim::IsSampleRate(options->rate_hz)) return;
+    FailAt(document, fmt::format("sensors.{}.rate_hz", sensor),
+           fmt::format("{} Hz does not fit whole steps of the simulation", options->rate_hz));
+  };
+  check("stereo", sensors.stereo);
+  check("imu", sensors.imu);
+  check("polarimeter", sensors.polarimeter);
+  check("reference", sensors.reference);
+}
+
+void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const EstimatorInfo& info : kEstimators) names.emplace_back(info.name);
+  std::set<std::string> seen;
+  for (const std::string& name : scenario.estimators.run) {
+    const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
+                                   [&](const EstimatorInfo& i) { return i.name == name; });
+    if (info == kEstimators.end()) {
+      const std::string nearest = NearestWord(name, names);
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' is not one of: {}{}", name, fmt::join(names, ", "),
+                         nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    }
+    if (!seen.insert(name).second) {
+      FailAt(document, "estimators.run", fmt::format("'{}' is listed twice", name));
+    }
+    if (info->needs_stereo && !scenario.sensors.stereo) {
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' needs cameras, but sensors.stereo is off", name));
+    }
+    if (info->needs_polarimeter && !scenario.sensors.polarimeter) {
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' needs a polarimeter, but sensors.polarimeter is off", name));
+    }
+  }
+}
+
+void CheckMetric(const YamlDocument& document, const Scenario& scenario, const std::string& key,
+                 const std::string& metric) {
+  if (IsMetric(metric)) {
+    const std::string estimator = EstimatorOfMetric(metric);
+    const auto& run = scenario.estimators.run;
+    // --estimators leaves some out on purpose: their criteria are skipped, not wrong.
+    const bool chosen = document.overrides.contains("estimators.run");
+    if (estimator.empty() || chosen || std::find(run.begin(), run.end(), estimator) != run.end()) {
+      return;
+    }
+    FailAt(document, key, fmt::format("estimator '{}' is not in estimators.run", estimator));
+  }
+  const std::string nearest = NearestWord(metric, AllMetrics());
+  FailAt(document, key,
+         fmt::format("'{}' is no metric of a run{} (polnav list shows all)", metric,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
+void CheckCriteria(const YamlDocument& document, const Scenario& scenario) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < scenario.criteria.size(); ++i) {
+    const Criterion& criterion = scenario.criteria[i];
+    const std::string key = fmt::format("criteria.{}", i);
+    if (criterion.name.empty()) FailAt(document, key, "a criterion needs a name");
+    if (!names.insert(criterion.name).second) {
+      FailAt(document, key + ".name", fmt::format("'{}' is given twice", criterion.name));
+    }
+    if (criterion.metric.empty()) FailAt(document, key, "a criterion needs a metric");
+    CheckMetric(document, scenario, key + ".metric", criterion.metric);
+    if (!criterion.below.empty()) {
+      CheckMetric(document, scenario, key + ".below", criterion.below);
+    }
+    if (!criterion.at_most && !criterion.at_least && criterion.below.empty()) {
+      FailAt(document, key, "a criterion needs at_most, at_least or below");
+    }
+  }
+}
+
+Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>& overrides) {
+  for (const auto& [assignment, source] : overrides) {
+    ApplyOverride(document, assignment, source);
+  }
+  Scenario scenario;
+  LoadOptions(document, scenario);
+  CheckBasics(document, scenario);
+  CheckRates(document, scenario.sensors);
+  CheckEstimators(document, scenario);
+  CheckCriteria(document, scenario);
+  return scenario;
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::filesystem::path& path,
+                      const std::vector<ScenarioOverride>& overrides) {
+  return FromDocument(ReadYaml(path), overrides);
+}
+
+Scenario ParseScenario(const std::string& text, const std::string& file,
+                       const std::vector<ScenarioOverride>& overrides) {
+  return FromDocument(ParseYaml(text, file), overrides);
+}
+
+std::string ResolvedYaml(const Scenario& scenario) { return ToYaml(OptionValues(scenario)); }
+
+}  // namespace polnav::testbed

@@ -1,0 +1,112 @@
+// What happens in a run: where, under which sky, driven how, sensed by what, judged by which
+// criteria? One YAML file; its keys are the field names below and in the option structs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nav/polarization/options.h"
+#include "nav/stereo/options.h"
+#include "sim/simulator.h"
+#include "sky/skylight.h"
+#include "sky/sun.h"
+
+namespace polnav::testbed {
+
+// How well an estimator is told where it starts; it finds out everything else by itself.
+struct StartOptions {
+  double position_sigma_m = 0.01;
+  double heading_sigma_deg = 0.5;
+  double level_sigma_deg = 1.0;  // of the assumption that the vehicle starts level
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("position_sigma_m", position_sigma_m, {.min = 1e-4, .max = 1000.0});
+    v("heading_sigma_deg", heading_sigma_deg, {.min = 1e-3, .max = 180.0});
+    v("level_sigma_deg", level_sigma_deg, {.min = 1e-3, .max = 45.0});
+  }
+};
+
+struct EstimatorOptions {
+  std::vector<std::string> run;  // names; see estimators.h
+  StartOptions start;
+  nav::StereoOptions stereo;
+  nav::PolarizationOptions polarization;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("run", run);
+    v("start", start);
+    v("stereo", stereo);
+    v("polarization", polarization);
+  }
+};
+
+// One sentence that a run must make true. metric and below are dotted paths into result.json.
+struct Criterion {
+  std::string name;
+  std::string metric;
+  std::optional<double> at_most;
+  std::optional<double> at_least;
+  std::string below;  // another metric; empty when not compared
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("name", name);
+    v("metric", metric);
+    v("at_most", at_most);
+    v("at_least", at_least);
+    v("below", below);
+  }
+};
+
+struct Scenario {
+  std::string name;
+  std::string description;
+  std::vector<std::string> paper;  // keys of docs/bibliography.md; their tables go into the report
+  double duration_s = 60.0;        // a whole number of milliseconds
+  std::uint64_t seed = 1;
+  sky::SiteOptions site;
+  sky::SkyOptions sky;
+  sim::WorldOptions world;
+  sim::CarOptions vehicle;
+  sim::SensorOptions sensors;
+  EstimatorOptions estimators;
+  std::vector<Criterion> criteria;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("name", name);
+    v("description", description);
+    v("paper", paper);
+    v("duration_s", duration_s, {.min = 0.001, .max = 86400.0});
+    v("seed", seed);
+    v("site", site);
+    v("sky", sky);
+    v("world", world);
+    v("vehicle", vehicle);
+    v("sensors", sensors);
+    v("estimators", estimators);
+    v("criteria", criteria);
+  }
+};
+
+// What the command line changes in a scenario file; see ApplyOverride.
+struct ScenarioOverride {
+  std::string assignment;  // key.path=value
+  std::string source;      // how the user said it
+};
+
+// Throws InputError for whatever a run could not make sense of, before anything is simulated.
+[[nodiscard]] Scenario LoadScenario(const std::filesystem::path& path,
+                                    const std::vector<ScenarioOverride>& overrides = {});
+[[nodiscard]] Scenario ParseScenario(const std::string& text, const std::string& file,
+                                     const std::vector<ScenarioOverride>& overrides = {});
+
+// Every key with its value, defaults included; reads back as the same scenario.
+[[nodiscard]] std::string ResolvedYaml(const Scenario& scenario);
+
+}  // namespace polnav::testbed
