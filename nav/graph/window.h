@@ -1,7 +1,7 @@
 // What does the sliding window hold?
 //
 // The graph of [Chu2021, eqs 13-16]: vertices are keyframe poses and landmarks; edges are stereo
-// reprojections (e1-e3), headings from polarization (e4), the levelled start, and the prior that
+// reprojections (e1-e3), headings from polarization (e4), the accelerometer's level, and the prior that
 // marginalization leaves of what has slid out. Plain data; bundle_adjustment.h and
 // marginalization.h work on it.
 #pragma once
@@ -25,7 +25,7 @@ struct HeadingEdge {
   double sigma_rad = 0.0;
 };
 
-// "Up" seen by a standing vehicle: unit vector in B, from the accelerometer.
+// "Up" in B, unit vector, from the accelerometer (nav/stereo/levelling.h).
 struct LevelEdge {
   Eigen::Vector3d up_B = Eigen::Vector3d::UnitZ();
   double sigma_rad = 0.0;

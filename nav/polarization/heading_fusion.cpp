@@ -56,9 +56,10 @@ std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Qu
   const double mean = innovation_sum_rad_ / n;
   const double white = DegToRad(options_.reading_sigma_deg);
   const double slow = DegToRad(options_.correlated_sigma_deg);
-  // A first edge stands for one reading interval at least.
-  const double dt = std::max(ToSeconds(stamp - last_edge_), 0.05);
-  const double slow_share = std::max(1.0, 2.0 * options_.correlation_time_s / dt);
+  // The slow part counts once at the start; after that, as often as it has changed.
+  const double slow_share =
+      last_edge_ ? std::max(1.0, 2.0 * options_.correlation_time_s / ToSeconds(stamp - *last_edge_))
+                 : 1.0;
   innovation_sum_rad_ = 0.0;
   innovations_ = 0;
   last_edge_ = stamp;

@@ -54,7 +54,7 @@ class HeadingFusion {
   std::vector<Reading> waiting_;
   double innovation_sum_rad_ = 0.0;
   int innovations_ = 0;
-  TimeNs last_edge_ = 0;
+  std::optional<TimeNs> last_edge_;
   int used_ = 0;
   int gated_ = 0;
 };

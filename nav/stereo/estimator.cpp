@@ -39,7 +39,7 @@ StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalib
                   .max_iterations = options.max_iterations},
       solver_{.sigmas = adjustment_.sigmas, .inlier_sigmas = options.inlier_sigmas},
       polarization_(std::move(polarization)),
-      levelling_(options.levelling_time_s),
+      levelling_(options.levelling),
       T_WB_{LevelAttitude(start.heading_rad), start.p_WB_m},
       covariance_(StartCovariance(start)) {}
 
@@ -47,18 +47,13 @@ Report StereoEstimator::Process(const Measurement& measurement) {
   if (const auto* features = std::get_if<StereoFeatures>(&measurement)) {
     return ProcessFeatures(*features);
   }
-  if (const auto* sample = std::get_if<ImuSample>(&measurement)) return ProcessImu(*sample);
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
+    levelling_.Add(*sample);
+    return {.outcome = Outcome::kUsed};
+  }
   const auto* light = std::get_if<PolarizationSample>(&measurement);
   if (light != nullptr && polarization_) return {.outcome = polarization_->Add(*light)};
   return {};
-}
-
-Report StereoEstimator::ProcessImu(const ImuSample& sample) {
-  const auto up_B = levelling_.Add(sample);
-  if (!up_B || window_.keyframes.empty()) return {};
-  window_.keyframes.back().level = {*up_B, DegToRad(options_.levelling_sigma_deg)};
-  keyframe_wanted_ = true;
-  return {.outcome = Outcome::kUsed};
 }
 
 Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
@@ -72,8 +67,10 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const bool starting = window_.keyframes.empty();
   if (solution) {
     Follow(*solution, views);
-  } else if (!starting) {
-    Coast(expected, features.stamp);
+    levelling_.AddMotion(features.stamp, motion_);
+  } else {
+    if (!starting) Coast(expected, features.stamp);
+    levelling_.Interrupt();
   }
   step_ = features.stamp - before;
   stamp_ = features.stamp;
@@ -155,7 +152,7 @@ void StereoEstimator::Coast(const Pose& expected, TimeNs stamp) {
 
 bool StereoEstimator::NeedsKeyframe(int inliers) const {
   const Pose& last = window_.keyframes.back().T_WB;
-  return keyframe_wanted_ || (T_WB_.p - last.p).norm() > options_.keyframe_distance_m ||
+  return levelling_.FirstIsDue() || (T_WB_.p - last.p).norm() > options_.keyframe_distance_m ||
          T_WB_.q.angularDistance(last.q) > DegToRad(options_.keyframe_angle_deg) ||
          inliers < options_.keyframe_overlap * keyframe_views_;
 }
@@ -164,6 +161,7 @@ bool StereoEstimator::NeedsKeyframe(int inliers) const {
 void StereoEstimator::AddKeyframe(const StereoFeatures& features,
                                   const std::vector<LandmarkView>& seen) {
   Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_};
+  keyframe.level = levelling_.TakeEdge();
   if (polarization_) keyframe.heading = polarization_->TakeEdge(stamp_, T_WB_.q);
   window_.keyframes.push_back(keyframe);
   std::set<std::uint64_t> trusted;
@@ -184,7 +182,6 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
     }
     ++keyframe_views_;
   }
-  keyframe_wanted_ = false;
 }
 
 void StereoEstimator::OptimizeWindow() {

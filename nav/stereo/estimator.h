@@ -2,7 +2,7 @@
 //
 // Stereo visual odometry over a sliding window [Chu2021, section 2]: flow rejection, pose, keyframe,
 // bundle adjustment, marginalization; with a polarimeter given, its headings are edges of the same
-// graph. Both of the paper's estimators are this class:
+// graph; with an IMU in the rig, its accelerometer keeps pitch and roll from drifting. Both of the paper's estimators are this class:
 //   stereo               no polarization
 //   stereo_polarization  with it
 // Starts from what the scenario grants. Fails where no texture is seen for long: it then coasts at
@@ -36,7 +36,6 @@ class StereoEstimator {
 
  private:
   [[nodiscard]] Report ProcessFeatures(const StereoFeatures& features);
-  [[nodiscard]] Report ProcessImu(const ImuSample& sample);
   [[nodiscard]] Pose PredictPose(TimeNs stamp) const;
   [[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const StereoFeatures& features) const;
   [[nodiscard]] std::vector<LandmarkView> RejectMoving(const std::vector<LandmarkView>& views,
@@ -61,7 +60,6 @@ class StereoEstimator {
   Matrix6d keyframe_covariance_ = Matrix6d::Zero();
   int keyframe_views_ = 0;
   std::uint64_t next_keyframe_ = 0;
-  bool keyframe_wanted_ = false;
   std::set<std::uint64_t> rejected_;  // tracks that do not belong to the static scene
 
   TimeNs stamp_ = 0;   // of the newest frame

@@ -1,6 +1,8 @@
 // How does the stereo estimator behave? YAML keys = field names.
 #pragma once
 
+#include "nav/stereo/levelling.h"
+
 namespace polnav::nav {
 
 // The front end: corners spread over the image, followed by Lucas-Kanade in the left image and
@@ -44,8 +46,7 @@ struct StereoOptions {
   double keyframe_angle_deg = 4.0;
   double keyframe_overlap = 0.5;     // a keyframe too when fewer of the last one's points are left
   int max_iterations = 6;            // of the bundle adjustment, a keyframe
-  double levelling_time_s = 1.0;     // standing still, the accelerometer levels the start
-  double levelling_sigma_deg = 0.3;  // what the accelerometer's bias leaves of it
+  LevellingOptions levelling;        // only with an IMU in the rig
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -60,8 +61,7 @@ struct StereoOptions {
     v("keyframe_angle_deg", keyframe_angle_deg, {.min = 0.1, .max = 90.0});
     v("keyframe_overlap", keyframe_overlap, {.min = 0.0, .max = 1.0});
     v("max_iterations", max_iterations, {.min = 1, .max = 100});
-    v("levelling_time_s", levelling_time_s, {.min = 0.1, .max = 60.0});
-    v("levelling_sigma_deg", levelling_sigma_deg, {.min = 0.001, .max = 10.0});
+    v("levelling", levelling);
   }
 };
 

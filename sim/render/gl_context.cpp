@@ -47,7 +47,7 @@ GLuint CompileShader(const GlFunctions& gl, GLenum kind, const char* source) {
 GlContext::GlContext()
     : context_(CreateContext()), surface_(std::size_t{4} * kSurfaceSide * kSurfaceSide) {
   MakeCurrent();
-#define POLNAV_GL_LOAD(name)                                                    \
+#define POLNAV_GL_LOAD(name)                                                         \
   gl_.name = reinterpret_cast<decltype(gl_.name)>(OSMesaGetProcAddress("gl" #name)); \
   if (gl_.name == nullptr) throw std::runtime_error("OSMesa lacks gl" #name);
   POLNAV_GL_FUNCTIONS(POLNAV_GL_LOAD)

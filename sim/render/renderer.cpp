@@ -101,8 +101,7 @@ void Renderer::Impl::MakeFramebuffer() const {
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.BindRenderbuffer(GL_RENDERBUFFER, color_depth[0]);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_R8, view.width_px, view.height_px);
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                             color_depth[0]);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_depth[0]);
   gl.BindRenderbuffer(GL_RENDERBUFFER, color_depth[1]);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, view.width_px, view.height_px);
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, color_depth[1]);

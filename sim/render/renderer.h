@@ -21,7 +21,8 @@ namespace polnav::sim {
 class Renderer {
  public:
   // The scene is copied into the context: it need not outlive the constructor.
-  // unneeded_px: corners of triangles whose pixels nobody will look at, left black and not paid for.
+  // unneeded_px: corners of triangles whose pixels nobody will look at, left black and not paid
+  // for.
   Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
            const std::vector<Eigen::Vector2d>& unneeded_px = {});
   ~Renderer();

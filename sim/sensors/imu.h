@@ -34,7 +34,7 @@ struct ImuOptions {
   double gyro_range_deg_s = 500.0;              // readings stop here
   double gyro_resolution_deg_s = 0.00625;       // step of the 16-bit output; 0: none
   double accel_noise_mg_sqrt_hz = 0.025;
-  double accel_bias_sigma_mg = 3.0;
+  double accel_bias_sigma_mg = 1.5;
   double accel_bias_walk_mg_sqrt_s = 0.0015;
   double accel_scale_sigma = 0.001;
   double accel_range_g = 8.0;

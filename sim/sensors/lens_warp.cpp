@@ -14,16 +14,19 @@ using Eigen::Vector2d;
 constexpr double kMargin_px = 2.0;  // bilinear interpolation reaches one pixel further
 constexpr int kSegments = 16;       // of each edge of the image
 
-
 // Normalized coordinates along an edge (top, bottom, left, right) of a camera's image, t in [0, 1].
 Vector2d OnEdge(const nav::CameraCalibration& camera, int side, double t) {
   const double right = camera.width_px - 1.0;
   const double bottom = camera.height_px - 1.0;
   switch (side) {
-    case 0: return RayOfPixel(camera, t * right, 0.0);
-    case 1: return RayOfPixel(camera, t * right, bottom);
-    case 2: return RayOfPixel(camera, 0.0, t * bottom);
-    default: return RayOfPixel(camera, right, t * bottom);
+    case 0:
+      return RayOfPixel(camera, t * right, 0.0);
+    case 1:
+      return RayOfPixel(camera, t * right, bottom);
+    case 2:
+      return RayOfPixel(camera, 0.0, t * bottom);
+    default:
+      return RayOfPixel(camera, right, t * bottom);
   }
 }
 
@@ -60,8 +63,7 @@ std::vector<Vector2d> UnseenTriangles(const std::vector<nav::CameraCalibration>&
     const bool horizontal = side < 2;
     const bool low_side = side % 2 == 0;
     const int along = horizontal ? 0 : 1;
-    const double border =
-        low_side ? -0.5 : (horizontal ? view.height_px : view.width_px) - 0.5;
+    const double border = low_side ? -0.5 : (horizontal ? view.height_px : view.width_px) - 0.5;
     // The least that any camera sees towards this border, edge point by edge point.
     std::vector<Vector2d> seen;
     for (int i = 0; i <= kSegments; ++i) {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/random.h"
+
 namespace polnav::sim {
 namespace {
 
@@ -41,14 +43,17 @@ PixelNoise::PixelNoise(double full_well_e, double read_noise_e) {
 
 void PixelNoise::Add(std::array<std::uint32_t, 2> key, cv::Mat& image) const {
   if (image.type() != CV_8UC1) throw std::logic_error("pixel noise needs CV_8UC1");
+  // Keys that differ in one bit must not give related noise.
+  const auto mixed = Philox({}, key);
   std::vector<std::int32_t> sums(static_cast<std::size_t>(image.cols));
   for (int row = 0; row < image.rows; ++row) {
-    SumOfBytes(key, static_cast<std::uint32_t>(row * image.cols), image.cols, sums.data());
+    SumOfBytes({mixed[0], mixed[1]}, static_cast<std::uint32_t>(row * image.cols), image.cols,
+               sums.data());
     std::uint8_t* const pixels = image.ptr<std::uint8_t>(row);
     for (int col = 0; col < image.cols; ++col) {
       const std::int32_t grey = pixels[col];
-      const std::int32_t noisy =
-          (grey << kFractionBits) + scale_[static_cast<std::size_t>(grey)] * sums[static_cast<std::size_t>(col)];
+      const std::int32_t noisy = (grey << kFractionBits) + scale_[static_cast<std::size_t>(grey)] *
+                                                               sums[static_cast<std::size_t>(col)];
       const std::int32_t rounded = (noisy + (1 << (kFractionBits - 1))) >> kFractionBits;
       pixels[col] = static_cast<std::uint8_t>(std::clamp(rounded, 0, 255));
     }

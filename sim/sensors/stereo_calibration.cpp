@@ -20,17 +20,17 @@ Quaterniond SmallRotation(double sigma_deg, Sample& random) {
   return Quaterniond(Eigen::AngleAxisd(angle, turn / angle));
 }
 
-void DisturbIntrinsics(const StereoCalibrationErrorOptions& error, Sample random,
+void DisturbIntrinsics(const StereoCalibrationErrorOptions& error, double share, Sample random,
                        nav::CameraCalibration& camera) {
-  const double focal = error.focal_sigma_px * random.Gaussian();
+  const double focal = share * error.focal_sigma_px * random.Gaussian();
   camera.fx_px += focal;
   camera.fy_px += focal;
-  camera.cx_px += error.center_sigma_px * random.Gaussian();
-  camera.cy_px += error.center_sigma_px * random.Gaussian();
-  camera.distortion[0] += error.distortion_sigma * random.Gaussian();
-  camera.distortion[1] += error.distortion_sigma * random.Gaussian();
-  camera.distortion[2] += 0.1 * error.distortion_sigma * random.Gaussian();
-  camera.distortion[3] += 0.1 * error.distortion_sigma * random.Gaussian();
+  camera.cx_px += share * error.center_sigma_px * random.Gaussian();
+  camera.cy_px += share * error.center_sigma_px * random.Gaussian();
+  camera.distortion[0] += share * error.distortion_sigma * random.Gaussian();
+  camera.distortion[1] += share * error.distortion_sigma * random.Gaussian();
+  camera.distortion[2] += 0.1 * share * error.distortion_sigma * random.Gaussian();
+  camera.distortion[3] += 0.1 * share * error.distortion_sigma * random.Gaussian();
 }
 
 }  // namespace
@@ -58,8 +58,10 @@ nav::StereoCalibration DrawTrueStereo(const StereoCameraOptions& options, std::u
   const StereoCalibrationErrorOptions& error = options.calibration_error;
   const RandomStream stream(seed, trial, "stereo/calibration");
   nav::StereoCalibration truth = NominalStereo(options);
-  DisturbIntrinsics(error, stream.At(0), truth.left);
-  DisturbIntrinsics(error, stream.At(1), truth.right);
+  for (nav::CameraCalibration* camera : {&truth.left, &truth.right}) {
+    DisturbIntrinsics(error, 1.0, stream.At(0), *camera);
+  }
+  DisturbIntrinsics(error, error.relative_share, stream.At(1), truth.right);
   Sample random = stream.At(2);
   truth.left.T_BC.q = truth.left.T_BC.q * SmallRotation(error.mount_rotation_sigma_deg, random);
   const double baseline = options.baseline_m + error.baseline_sigma_m * random.Gaussian();

@@ -58,20 +58,24 @@ struct StereoCamera::Impl {
         right{truth.right.T_BC, LensWarp(truth.right, view), {seed, trial, "stereo/noise/right"}},
         exposure(options.exposure > 0.0 ? options.exposure : FindExposure(options.target_mean)) {}
 
+  // What saturates at one exposure tells nothing about a lower one: search in steps.
   double FindExposure(double target_mean) {
-    constexpr double kTrialExposure = 0.15;  // the sky does not saturate
+    double found = 0.1;
+    for (int step = 0; step < 4; ++step)
+      found *= GainFor(HistogramFromTheOrigin(found), target_mean);
+    return found;
+  }
+
+  std::array<double, 256> HistogramFromTheOrigin(double trial_exposure) {
     std::array<double, 256> histogram{};
     cv::Mat distorted;
     for (int quarter = 0; quarter < 4; ++quarter) {
       const nav::Pose T_WB{nav::LevelAttitude(0.5 * M_PI * quarter), Eigen::Vector3d::Zero()};
-      renderer.Render(T_WB * left.T_BC, kTrialExposure, pinhole);
+      renderer.Render(T_WB * left.T_BC, trial_exposure, pinhole);
       left.warp.Apply(pinhole, distorted);
-      for (auto grey = distorted.begin<std::uint8_t>(); grey != distorted.end<std::uint8_t>();
-           ++grey) {
-        histogram[*grey] += 1.0;
-      }
+      for (const std::uint8_t grey : cv::Mat_<std::uint8_t>(distorted)) histogram[grey] += 1.0;
     }
-    return kTrialExposure * GainFor(histogram, target_mean);
+    return histogram;
   }
 
   cv::Mat CaptureSide(const Side& side, const nav::Pose& T_WB, std::uint64_t index) {

@@ -37,12 +37,17 @@ cv::Mat Wall(int style, Sample& random) {
   const double grey = Between(random, 70.0, 150.0);
   cv::Mat wall = grey + 0.30 * grey * FractalNoise(kSide, {1, 9, 0.8}, random);
   switch (style % 4) {
-    case 1: LayBricks(wall, 32, 16, 11.0, random); break;
-    case 2: LayBricks(wall, 128, 64, 13.0, random); break;
+    case 1:
+      LayBricks(wall, 32, 16, 11.0, random);
+      break;
+    case 2:
+      LayBricks(wall, 128, 64, 13.0, random);
+      break;
     case 3:
       for (int y = 0; y < kSide; y += kCell) wall.rowRange(y, y + 46) += cv::Scalar(38.0);
       break;
-    default: break;
+    default:
+      break;
   }
   return wall;
 }
@@ -128,16 +133,16 @@ cv::Mat FacadeTexture(int style, Sample& random) {
 }
 
 cv::Mat ShopTexture(Sample& random) {
-  cv::Mat image =
-      cv::Mat(Wall(0, random).rowRange(0, kCell)).clone();
+  cv::Mat image = cv::Mat(Wall(0, random).rowRange(0, kCell)).clone();
   for (int shop = 0; shop < kBaysPerTexture; ++shop) {
     const int x = shop * kCell;
     const cv::Scalar board(Between(random, 20.0, 190.0));
     cv::rectangle(image, {x + 8, 8, kCell - 16, 50}, board, cv::FILLED);
     for (int i = 0; i < 7; ++i) {  // lettering
       const double ink = board[0] > 100.0 ? 25.0 : 200.0;
-      const cv::Rect stroke(x + 24 + 30 * i + IntBetween(random, 0, 8), 16 + IntBetween(random, 0, 8),
-                            IntBetween(random, 5, 20), IntBetween(random, 12, 26));
+      const cv::Rect stroke(x + 24 + 30 * i + IntBetween(random, 0, 8),
+                            16 + IntBetween(random, 0, 8), IntBetween(random, 5, 20),
+                            IntBetween(random, 12, 26));
       cv::rectangle(image, stroke, cv::Scalar(ink), random.Uniform() < 0.5 ? cv::FILLED : 4);
     }
     const int door = IntBetween(random, 0, 1) == 0 ? x + 14 : x + kCell - 94;

@@ -7,7 +7,7 @@
 
 namespace polnav::sim {
 
-inline constexpr double kBay_m = 3.2;     // width of a bay, and height of a storey
+inline constexpr double kBay_m = 3.2;  // width of a bay, and height of a storey
 inline constexpr int kBaysPerTexture = 4;
 
 // style: 0 plaster, 1 brick, 2 stone panels, 3 concrete bands; any other repeats these.

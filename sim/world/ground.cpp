@@ -43,7 +43,8 @@ class GroundBuilder {
         const Vector3d p = Point(s, ribs[k]);
         const std::size_t near = k + 1 < ribs.size() ? k : k - 1;
         const Vector3d across = Point(s, ribs[near + 1]) - Point(s, ribs[near]);
-        const Vector3d along = Point(s + 0.5 * step, ribs[near]) - Point(s - 0.5 * step, ribs[near]);
+        const Vector3d along =
+            Point(s + 0.5 * step, ribs[near]) - Point(s - 0.5 * step, ribs[near]);
         const Vector2d uv = uv_of(static_cast<double>(row) / rows, static_cast<int>(k), p);
         mesh.vertices.push_back({p.cast<float>(), along.cross(across).normalized().cast<float>(),
                                  uv.cast<float>(), static_cast<float>(Shade(p))});
@@ -74,7 +75,7 @@ class GroundBuilder {
     return street_.At(s, rib.offset_m, rib.lift_m);
   }
   [[nodiscard]] double Shade(const Vector3d& p) const {
-    return std::max(0.4, 1.0 + 0.30 * fine_.At(p.x(), p.y()) + 0.28 * coarse_.At(p.x(), p.y()));
+    return std::max(0.4, 1.0 + 0.20 * fine_.At(p.x(), p.y()) + 0.25 * coarse_.At(p.x(), p.y()));
   }
 
   const StreetFrame& street_;
@@ -87,13 +88,13 @@ void AddRoad(const StreetFrame& street, std::uint64_t seed, GroundBuilder& groun
              SceneBuilder& scene) {
   const RandomStream stream(seed, 0, "plaza/road");
   Sample base_random = stream.At(0);
-  const cv::Mat base = FractalNoise(1024, {2, 10, 0.9}, base_random);
+  const cv::Mat base = FractalNoise(1024, {3, 10, 0.95}, base_random);
   std::vector<int> variants;
   for (int i = 0; i < kRoadVariants; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i) + 1);
     variants.push_back(scene.AddTexture(RoadTexture(base, i == kRoadVariants - 1, random)));
   }
-  constexpr int kColumns = 6;
+  constexpr int kColumns = 4;
   std::vector<Rib> ribs;
   for (int k = 0; k <= kColumns; ++k) {
     ribs.push_back({street.half_road_m() * (2.0 * k / kColumns - 1.0), 0.0});
@@ -105,31 +106,34 @@ void AddRoad(const StreetFrame& street, std::uint64_t seed, GroundBuilder& groun
     const bool crossing = i % 12 == 7;
     const auto variant = crossing ? kRoadVariants - 1 : random.Bits() % (kRoadVariants - 1);
     const bool mirrored = random.Uniform() < 0.5;
-    ground.AddStrip(tile * i, tile * (i + 1), 7, ribs, variants[variant],
+    ground.AddStrip(tile * i, tile * (i + 1), 5, ribs, variants[variant],
                     [mirrored](double along, int rib, const Vector3d&) -> Vector2d {
                       return {static_cast<double>(rib) / kColumns, mirrored ? 1.0 - along : along};
                     });
   }
 }
 
+// The kerb's top lies over the edge of what it holds back, its face reaches below the road: bands
+// of different lengths of step meet without gaps.
 void AddKerbs(const StreetFrame& street, GroundBuilder& ground, int concrete) {
   const double in = street.half_road_m();
   const double out = -street.half_road_m() - kBayWidth_m;
-  const double h = kKerbHeight_m;
+  const double top = kKerbHeight_m;
+  const double below = -0.06;
   const int pieces = static_cast<int>(street.length_m() / 24.0) + 1;
   const double piece = street.length_m() / pieces;
-  const auto kerb = [&](const std::vector<Rib>& ribs, double width) {
+  const auto kerb = [&](const std::vector<Rib>& ribs) {
     for (int i = 0; i < pieces; ++i) {
       ground.AddStrip(piece * i, piece * (i + 1), 12, ribs, concrete,
-                      [piece, width](double along, int rib, const Vector3d&) -> Vector2d {
-                        return {along * piece / 3.0, rib * width / 3.0};
+                      [piece](double along, int rib, const Vector3d&) -> Vector2d {
+                        return {along * piece / 3.0, 0.1 * rib};
                       });
     }
   };
-  kerb({{in, 0.0}, {in, h}}, h);
-  kerb({{in, h}, {in + kKerbWidth_m, h}}, kKerbWidth_m);
-  kerb({{out - kKerbWidth_m, h}, {out, h}}, kKerbWidth_m);
-  kerb({{out, h}, {out, 0.0}}, h);
+  kerb({{in, below}, {in, top}});
+  kerb({{in, top}, {in + kKerbWidth_m, top}});
+  kerb({{out - kKerbWidth_m, top}, {out, top}});
+  kerb({{out, top}, {out, below}});
 }
 
 }  // namespace
@@ -146,27 +150,41 @@ void AddGround(const StreetFrame& street, std::uint64_t seed, SceneBuilder& scen
   const int concrete = scene.AddTexture(PavingTexture(2, 1.2, random));
   AddKerbs(street, ground, concrete);
 
-  const double h = kKerbHeight_m;
-  const double in = street.half_road_m() + kKerbWidth_m;
+  // Each band lies a little lower than its neighbour on the road's side and reaches under it.
+  const double h = kKerbHeight_m - 0.03;
+  const double low = h - 0.03;
+  const double under = 0.25;
+  const double edge = street.half_road_m();
+  const double in = edge + kKerbWidth_m;
   const double path = in + kInnerPath_m;
-  const double bay = -street.half_road_m() - kBayWidth_m;
+  const double bay = -edge - kBayWidth_m;
   const double pavement = bay - kKerbWidth_m - kOuterPavement_m;
   const double verge = pavement - kVerge_m;
   const double radius = street.radius_m();
   const double round = 0.75 * radius;  // the middle of the park is paved
-  ground.AddBand(24, 10, {{bay, 0.0}, {0.5 * (bay - 0.5 * street.half_road_m() * 2.0), 0.0},
-                          {-street.half_road_m(), 0.0}},
-                 cobbles, 2.6);
-  ground.AddBand(24, 12, {{in, h}, {in + 1.5, h}, {path, h}}, paving, 4.0);
-  ground.AddBand(24, 10, {{path, h}, {path + 1.5, h}, {path + 3.5, h}, {path + 7.0, h}}, grass, 3.7);
-  ground.AddBand(12, 8, {{path + 7.0, h}, {path + 13.0, h}, {0.5 * (path + 13.0 + round), h},
-                         {round, h}}, grass, 3.7);
-  ground.AddBand(6, 6, {{round, h}, {0.5 * (round + radius), h}, {radius, h}}, paving, 4.0);
-  ground.AddBand(24, 10, {{pavement, h}, {pavement + 2.0, h}, {pavement + 4.0, h},
-                          {bay - kKerbWidth_m, h}}, paving, 4.0);
-  ground.AddBand(24, 7, {{verge, h}, {pavement, h}}, grass, 3.7);
-  ground.AddBand(24, 5, {{verge - 24.0, h}, {verge - 10.0, h}, {verge, h}}, cobbles, 5.2);
-  ground.AddBand(12, 4, {{verge - 200.0, h}, {verge - 80.0, h}, {verge - 24.0, h}}, concrete, 23.0);
+  ground.AddBand(24, 8, {{bay - 0.1, -0.03}, {bay + 1.2, -0.03}, {under - edge, -0.03}}, cobbles,
+                 2.6);
+  ground.AddBand(24, 8, {{in - 0.2, h}, {path, h}}, paving, 4.0);
+  ground.AddBand(24, 8, {{path - under, low}, {path + 1.5, low}, {path + 7.0, low}}, grass, 3.7);
+  ground.AddBand(12, 7,
+                 {{path + 7.0 - under, low - 0.03},
+                  {0.5 * (path + 7.0 + round), low - 0.03},
+                  {round, low - 0.03}},
+                 grass, 3.7);
+  ground.AddBand(
+      6, 5,
+      {{round - under, low - 0.06}, {0.5 * (round + radius), low - 0.06}, {radius, low - 0.06}},
+      paving, 4.0);
+  ground.AddBand(24, 8, {{pavement, h}, {pavement + 3.0, h}, {bay - kKerbWidth_m + 0.2, h}}, paving,
+                 4.0);
+  ground.AddBand(24, 5, {{verge, low}, {pavement + under, low}}, grass, 3.7);
+  ground.AddBand(
+      24, 4, {{verge - 24.0, low - 0.03}, {verge - 10.0, low - 0.03}, {verge + under, low - 0.03}},
+      cobbles, 5.2);
+  ground.AddBand(
+      12, 4,
+      {{verge - 200.0, low - 0.06}, {verge - 80.0, low - 0.06}, {verge - 24.0 + under, low - 0.06}},
+      concrete, 23.0);
 }
 
 }  // namespace polnav::sim

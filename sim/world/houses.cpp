@@ -68,8 +68,8 @@ void AddSide(const House& house, const Vector3d& corner, const Vector3d& right, 
   const int upper = house.storeys - 1;
   const Wall storeys{corner + storey, right, upper * storey, columns,
                      has_shops ? (upper + 1) / 2 : 1};
-  scene.AddWall(storeys, facade, {first_bay, (house.storeys % 4) * per_texture, width,
-                                  upper * per_texture},
+  scene.AddWall(storeys, facade,
+                {first_bay, (house.storeys % 4) * per_texture, width, upper * per_texture},
                 house.shade, 0.2, random);
   // What the wall stands on, where the ground falls away.
   const Wall plinth{corner - 2.0 * Vector3d::UnitZ(), right, 2.0 * Vector3d::UnitZ(), 1, 1};
@@ -84,8 +84,8 @@ void AddBalconies(const House& house, const Vector3d& right, const Vector3d& fro
     for (int bay = column_of_balconies; bay < house.bays; bay += 2) {
       if (random.Uniform() < 0.35) continue;
       const double x = kBay_m * (bay + 0.5 - 0.5 * house.bays);
-      const Vector3d foot = house.foot_m + x * right + 0.55 * front +
-                            (kBay_m * storey - 0.15) * Vector3d::UnitZ();
+      const Vector3d foot =
+          house.foot_m + x * right + 0.55 * front + (kBay_m * storey - 0.15) * Vector3d::UnitZ();
       const double shade = 0.6 + 0.8 * random.Uniform();
       scene.AddBox({foot, house.yaw_rad, 2.4, 1.1, 1.05}, textures.concrete, 0.4, shade);
     }
@@ -106,7 +106,7 @@ void AddHouse(const House& house, const HouseTextures& textures, Sample& random,
   AddSide(house, right_corner, -depth * front, side_bays, false, textures, random, scene);
   AddSide(house, left_corner - depth * front, depth * front, side_bays, false, textures, random,
           scene);
-  AddBalconies(house, right, front, textures, random, scene);
+  if (house.storeys < 8) AddBalconies(house, right, front, textures, random, scene);
   const Vector3d middle = house.foot_m - 0.5 * depth * front;
   const Vector3d roof = middle + height * Vector3d::UnitZ();
   scene.AddBox({roof, house.yaw_rad, width + 0.8, depth + 0.8, 0.7}, textures.concrete, 0.4, 0.9);
@@ -114,9 +114,9 @@ void AddHouse(const House& house, const HouseTextures& textures, Sample& random,
   for (int i = 0; i < boxes; ++i) {
     const Vector3d foot = roof + (random.Uniform() - 0.5) * 0.7 * width * right +
                           (random.Uniform() - 0.5) * 0.5 * depth * front;
-    scene.AddBox({foot, house.yaw_rad, 2.0 + 3.0 * random.Uniform(), 3.0,
-                  2.0 + 2.0 * random.Uniform()},
-                 textures.concrete, 0.3, 0.6 + 0.6 * random.Uniform());
+    scene.AddBox(
+        {foot, house.yaw_rad, 2.0 + 3.0 * random.Uniform(), 3.0, 2.0 + 2.0 * random.Uniform()},
+        textures.concrete, 0.3, 0.6 + 0.6 * random.Uniform());
   }
 }
 

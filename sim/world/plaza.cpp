@@ -1,5 +1,6 @@
 #include "sim/world/plaza.h"
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 #include "sim/world/ground.h"
@@ -11,12 +12,17 @@
 namespace polnav::sim {
 namespace {
 
-// Pulls every texture, and the shades between vertices, towards their mean.
+// Pulls every texture towards its mean, and every vertex's shade towards one.
 void ScaleContrast(double contrast, Scene& scene) {
   if (contrast == 1.0) return;
   for (cv::Mat& texture : scene.textures) {
     const double mean = cv::mean(texture)[0];
     texture.convertTo(texture, CV_8UC1, contrast, (1.0 - contrast) * mean);
+  }
+  for (Mesh& mesh : scene.meshes) {
+    for (Vertex& v : mesh.vertices) {
+      v.shade = std::max(0.0F, 1.0F + static_cast<float>(contrast) * (v.shade - 1.0F));
+    }
   }
 }
 

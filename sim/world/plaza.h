@@ -15,7 +15,7 @@ namespace polnav::sim {
 
 // YAML keys = field names.
 struct PlazaOptions {
-  int tree_count = 90;              // in the park and along the outer pavement
+  int tree_count = 70;              // in the park and along the outer pavement
   int lamp_count = 28;              // along the outer kerb
   int parked_car_count = 26;        // in the bay outside the road
   int furniture_count = 60;         // benches, bins, hedges, planters, signs

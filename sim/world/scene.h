@@ -11,7 +11,7 @@ namespace polnav::sim {
 struct Vertex {
   Eigen::Vector3f p_W_m;
   Eigen::Vector3f normal_W;
-  Eigen::Vector2f uv;   // in texture repeats
+  Eigen::Vector2f uv;  // in texture repeats
   float shade = 1.0F;  // scales the texture here: large-scale variation that no texture repeats
 };
 

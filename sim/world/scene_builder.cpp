@@ -77,8 +77,8 @@ void SceneBuilder::AddWall(const Wall& wall, int texture, const UvRect& uv, doub
   const auto stride = static_cast<std::uint32_t>(wall.columns) + 1;
   for (int row = 0; row < wall.rows; ++row) {
     for (int column = 0; column < wall.columns; ++column) {
-      const std::uint32_t a = first + static_cast<std::uint32_t>(row) * stride +
-                              static_cast<std::uint32_t>(column);
+      const std::uint32_t a =
+          first + static_cast<std::uint32_t>(row) * stride + static_cast<std::uint32_t>(column);
       AddQuadIndices(mesh, a, a + 1, a + stride + 1, a + stride);
     }
   }
@@ -110,8 +110,8 @@ void SceneBuilder::AddBox(const Box& box, int texture, double uv_per_m, double s
   std::array<Vector3d, 4> high;
   constexpr std::array<std::array<double, 2>, 4> kSigns = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vector3d corner = 0.5 * (kSigns[i][0] * box.length_m * along +
-                                   kSigns[i][1] * box.width_m * across);
+    const Vector3d corner =
+        0.5 * (kSigns[i][0] * box.length_m * along + kSigns[i][1] * box.width_m * across);
     low[i] = box.foot_m + corner;
     high[i] = box.foot_m + box.top_scale * corner + box.height_m * Vector3d::UnitZ();
   }
@@ -135,8 +135,7 @@ void SceneBuilder::AddPole(const Pole& pole, int texture, double uv_per_m, doubl
     const double u = uv_per_m * circumference * i / pole.sides;
     mesh.vertices.push_back(
         MakeVertex(pole.foot_m + pole.foot_radius_m * out, out, u, uv_per_m * axis.norm(), shade));
-    mesh.vertices.push_back(
-        MakeVertex(pole.top_m + pole.top_radius_m * out, out, u, 0.0, shade));
+    mesh.vertices.push_back(MakeVertex(pole.top_m + pole.top_radius_m * out, out, u, 0.0, shade));
   }
   for (int i = 0; i < pole.sides; ++i) {
     const std::uint32_t a = first + 2 * static_cast<std::uint32_t>(i);

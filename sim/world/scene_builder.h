@@ -80,8 +80,8 @@ class SceneBuilder {
     bool is_detail;
     auto operator<=>(const Cell&) const = default;
   };
-  void AddFlatQuad(Mesh& mesh, const std::array<Eigen::Vector3d, 4>& corners_ccw,
-                   double uv_per_m, double shade);
+  void AddFlatQuad(Mesh& mesh, const std::array<Eigen::Vector3d, 4>& corners_ccw, double uv_per_m,
+                   double shade);
 
   void CapPole(Mesh& mesh, const Pole& pole, std::uint32_t first, double uv_per_m, double shade);
 

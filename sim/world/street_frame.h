@@ -50,9 +50,9 @@ class StreetFrame {
 // Cross section, in offsets from the road's edges.
 inline constexpr double kKerbHeight_m = 0.12;
 inline constexpr double kKerbWidth_m = 0.3;
-inline constexpr double kBayWidth_m = 2.3;         // parked cars, outside the road
-inline constexpr double kInnerPath_m = 3.0;        // paved, inside the inner kerb
-inline constexpr double kOuterPavement_m = 6.0;    // outside the outer kerb
-inline constexpr double kVerge_m = 4.0;            // grass beyond it
+inline constexpr double kBayWidth_m = 2.3;       // parked cars, outside the road
+inline constexpr double kInnerPath_m = 3.0;      // paved, inside the inner kerb
+inline constexpr double kOuterPavement_m = 6.0;  // outside the outer kerb
+inline constexpr double kVerge_m = 4.0;          // grass beyond it
 
 }  // namespace polnav::sim

@@ -83,14 +83,17 @@ void AddSign(const Vector3d& foot, double yaw, const Materials& materials, Sampl
   const double height = 1.6 + 1.2 * random.Uniform();
   const Vector3d top = foot + height * Vector3d::UnitZ();
   scene.AddPole({foot, top, 0.05, 0.05, 6}, materials.paint, 0.6, 0.6);
-  scene.AddBox({top, yaw + M_PI_2, 0.8 + 0.8 * random.Uniform(), 0.08, 0.6 + 0.6 * random.Uniform()},
-               materials.poster, 0.35, 1.0);
+  scene.AddBox(
+      {top, yaw + M_PI_2, 0.8 + 0.8 * random.Uniform(), 0.08, 0.6 + 0.6 * random.Uniform()},
+      materials.poster, 0.35, 1.0);
 }
 
 void AddPiece(int kind, const Vector3d& foot, double yaw, const Materials& materials,
               Sample& random, SceneBuilder& scene) {
   switch (kind % 5) {
-    case 0: AddBench(foot, yaw, materials, scene); break;
+    case 0:
+      AddBench(foot, yaw, materials, scene);
+      break;
     case 1:
       scene.AddBox({foot, yaw, 0.5, 0.45, 0.9, 0.9}, materials.paint, 0.7, 0.4);
       break;
@@ -98,7 +101,9 @@ void AddPiece(int kind, const Vector3d& foot, double yaw, const Materials& mater
       scene.AddBox({foot, yaw, 3.0 + 5.0 * random.Uniform(), 0.9, 0.7 + 0.4 * random.Uniform()},
                    materials.hedge, 0.5, 1.0);
       break;
-    case 3: AddSign(foot, yaw, materials, random, scene); break;
+    case 3:
+      AddSign(foot, yaw, materials, random, scene);
+      break;
     default:  // planter
       scene.AddBox({foot, yaw, 1.2, 1.2, 0.55, 1.15}, materials.wood, 0.6, 1.2);
       scene.AddBlob(foot + 0.8 * Vector3d::UnitZ(), {0.6, 0.6, 0.5}, materials.hedge, 1.1, random);
@@ -121,10 +126,11 @@ void AddStreetThings(const PlazaOptions& options, const StreetFrame& street, std
                      SceneBuilder& scene) {
   const RandomStream stream(seed, 0, "plaza/things");
   Sample texture_random = stream.At(0);
-  const Materials materials{.paint = scene.AddTexture(PlainTexture(256, 170.0, 0.25, texture_random)),
-                            .wood = scene.AddTexture(PlainTexture(256, 95.0, 0.6, texture_random)),
-                            .hedge = scene.AddTexture(FoliageTexture(texture_random)),
-                            .poster = scene.AddTexture(ShopTexture(texture_random))};
+  const Materials materials{
+      .paint = scene.AddTexture(PlainTexture(256, 170.0, 0.25, texture_random)),
+      .wood = scene.AddTexture(PlainTexture(256, 95.0, 0.6, texture_random)),
+      .hedge = scene.AddTexture(FoliageTexture(texture_random)),
+      .poster = scene.AddTexture(ShopTexture(texture_random))};
   for (int i = 0; i < options.lamp_count; ++i) {
     AddLamp(street, street.length_m() * (i + 0.5) / options.lamp_count, materials, scene);
   }
@@ -136,7 +142,8 @@ void AddStreetThings(const PlazaOptions& options, const StreetFrame& street, std
   for (int i = 0; i < options.furniture_count; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i) + 2000);
     const double s = street.length_m() * (i + random.Uniform()) / options.furniture_count;
-    const double inner = street.half_road_m() + kKerbWidth_m + kInnerPath_m + 6.0 * random.Uniform();
+    const double inner =
+        street.half_road_m() + kKerbWidth_m + kInnerPath_m + 6.0 * random.Uniform();
     const double outer = -street.half_road_m() - kBayWidth_m - 1.5 - 5.0 * random.Uniform();
     const double offset = i % 2 == 0 ? inner : outer;
     const double yaw = street.Yaw(s) + 0.1 * random.Gaussian();

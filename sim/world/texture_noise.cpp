@@ -35,11 +35,12 @@ cv::Mat FractalNoise(int side_px, const Octaves& octaves, RandomStream::Sample& 
   double amplitude = 1.0;
   double variance = 0.0;
   for (int k = octaves.first; k <= octaves.last && (1 << k) <= side_px; ++k) {
-    sum += amplitude * Octave(side_px, 1 << k, random);
+    cv::scaleAdd(Octave(side_px, 1 << k, random), amplitude, sum, sum);
     variance += amplitude * amplitude / 3.0 * 0.6;  // uniform on [-1, 1], smoothed
     amplitude *= octaves.persistence;
   }
-  return sum * (kDeviation / std::sqrt(variance));
+  sum *= kDeviation / std::sqrt(variance);
+  return sum;
 }
 
 double GroundNoise::Lattice(std::int64_t i, std::int64_t j) const {

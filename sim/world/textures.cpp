@@ -28,6 +28,11 @@ cv::Point2d PointIn(Sample& random, double margin, double side) {
   return {x, Between(random, margin, side - margin)};
 }
 
+std::vector<cv::Point> ShiftedBy(std::vector<cv::Point> points, const cv::Point& shift) {
+  for (cv::Point& p : points) p += shift;
+  return points;
+}
+
 // A crack or a bitumen seam wanders; it stays off the tile's edge, where tiles meet.
 void DrawCrack(cv::Mat& image, double grey, int thickness_px, Sample& random) {
   cv::Point2d p = PointIn(random, 80.0, kSide);
@@ -51,21 +56,25 @@ void DrawPatch(cv::Mat& image, Sample& random) {
   cv::Point2f corner[4];
   patch.points(corner);
   const std::vector<cv::Point> outline(corner, corner + 4);
-  cv::Mat mask = cv::Mat::zeros(image.size(), CV_8UC1);
-  cv::fillConvexPoly(mask, outline, cv::Scalar(255));
-  const double change = Between(random, -16.0, 18.0);
-  cv::add(image, cv::Scalar(change), image, mask);
+  const cv::Rect around = patch.boundingRect() & cv::Rect(0, 0, kSide, kSide);
+  cv::Mat mask = cv::Mat::zeros(around.size(), CV_8UC1);
+  cv::fillConvexPoly(mask, ShiftedBy(outline, -around.tl()), cv::Scalar(255));
+  cv::Mat inside = image(around);
+  cv::add(inside, cv::Scalar(Between(random, -16.0, 18.0)), inside, mask);
   cv::polylines(image, outline, true, cv::Scalar(24), 3, cv::LINE_AA);
 }
 
 void DrawStain(cv::Mat& image, double change, Sample& random) {
-  cv::Mat stain = cv::Mat::zeros(image.size(), CV_32FC1);
   const cv::Size axes(static_cast<int>(Between(random, 6.0, 60.0)),
                       static_cast<int>(Between(random, 6.0, 60.0)));
-  cv::ellipse(stain, PointIn(random, 90.0, kSide), axes, Between(random, 0.0, 180.0), 0.0, 360.0,
+  constexpr int kReach = 72;  // the longest axis and the blur
+  const cv::Point center = PointIn(random, kReach + 8.0, kSide);
+  const cv::Rect around(center.x - kReach, center.y - kReach, 2 * kReach, 2 * kReach);
+  cv::Mat stain = cv::Mat::zeros(around.size(), CV_32FC1);
+  cv::ellipse(stain, {kReach, kReach}, axes, Between(random, 0.0, 180.0), 0.0, 360.0,
               cv::Scalar(change), cv::FILLED, cv::LINE_AA);
   cv::blur(stain, stain, {7, 7});
-  image += stain;
+  image(around) += stain;
 }
 
 void DrawManhole(cv::Mat& image, Sample& random) {
@@ -96,9 +105,9 @@ void Paint(cv::Mat& image, const cv::Mat& wear, const cv::Rect& stripe) {
 }  // namespace
 
 cv::Mat RoadTexture(const cv::Mat& base, bool with_crossing, Sample& random) {
-  cv::Mat image = 52.0 + 34.0 * base;
+  cv::Mat image = 54.0 + 46.0 * base;
   for (int i = 0; i < 3; ++i) DrawPatch(image, random);
-  for (int i = 0; i < 22; ++i) DrawStain(image, Between(random, -22.0, 16.0), random);
+  for (int i = 0; i < 40; ++i) DrawStain(image, Between(random, -30.0, 26.0), random);
   for (int i = 0; i < 7; ++i)
     DrawCrack(image, 18.0, 2 + static_cast<int>(random.Bits() % 3), random);
   for (int i = 0; i < 140; ++i) {  // chewing gum, leaves, grit
@@ -119,7 +128,7 @@ cv::Mat RoadTexture(const cv::Mat& base, bool with_crossing, Sample& random) {
 }
 
 cv::Mat PavingTexture(int slabs, double contrast, Sample& random) {
-  cv::Mat image = 92.0 + 26.0 * contrast * FractalNoise(kSide, {3, 10, 0.85}, random);
+  cv::Mat image = 92.0 + 34.0 * contrast * FractalNoise(kSide, {4, 10, 0.95}, random);
   const int pitch = kSide / slabs;
   for (int row = 0; row < slabs; ++row) {
     for (int col = 0; col < slabs; ++col) {
@@ -145,7 +154,7 @@ cv::Mat PavingTexture(int slabs, double contrast, Sample& random) {
 }
 
 cv::Mat GrassTexture(Sample& random) {
-  cv::Mat image = 48.0 + 40.0 * FractalNoise(kSide, {2, 10, 0.88}, random);
+  cv::Mat image = 50.0 + 52.0 * FractalNoise(kSide, {3, 10, 0.95}, random);
   for (int i = 0; i < 2600; ++i) {  // blades
     const cv::Point2d p = PointIn(random, 12.0, kSide);
     const double heading = Between(random, 0.0, 3.14);
@@ -153,9 +162,9 @@ cv::Mat GrassTexture(Sample& random) {
              cv::Scalar(Between(random, 12.0, 110.0)), 1 + static_cast<int>(random.Bits() % 2),
              cv::LINE_AA);
   }
-  for (int i = 0; i < 90; ++i) {  // fallen leaves, flowers, bare earth
+  for (int i = 0; i < 260; ++i) {  // fallen leaves, flowers, bare earth
     cv::ellipse(image, PointIn(random, 20.0, kSide),
-                {2 + static_cast<int>(random.Bits() % 9), 2 + static_cast<int>(random.Bits() % 6)},
+                {2 + static_cast<int>(random.Bits() % 14), 2 + static_cast<int>(random.Bits() % 9)},
                 Between(random, 0.0, 180.0), 0.0, 360.0, cv::Scalar(Between(random, 15.0, 190.0)),
                 cv::FILLED, cv::LINE_AA);
   }

@@ -92,8 +92,9 @@ TEST(StereoEstimator, AStandingStartIsLevelledByTheAccelerometer) {
   }
   const Eigen::Vector3d up = last.T_WB.q.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_true = truth.q.conjugate() * Eigen::Vector3d::UnitZ();
-  // The prior of 3 degrees against the edge of 0.3 leaves a hundredth of the 1.15 degrees.
-  EXPECT_LT((up - up_true).norm(), 0.02 * 0.02);
+  // The edge's 0.41 degrees (vision's velocity over one second) against the prior's 3 leave a
+  // fiftieth of the 1.15 degrees; twice that for vision's noise.
+  EXPECT_LT((up - up_true).norm(), 0.02 * 0.04);
 }
 
 TEST(StereoEstimator, PolarizationPullsAWrongStartingHeadingBack) {

@@ -2,8 +2,10 @@
 "use strict";
 (function () {
   const charts = [];
-  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const faint = (name, alpha) => color(name) + Math.round(255 * alpha).toString(16).padStart(2, "0");
+  const color = (name) =>
+    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const faint = (name, alpha) =>
+    color(name) + Math.round(255 * alpha).toString(16).padStart(2, "0");
   const wholeRun = { min: 0, max: run.end_s };
   const slot = (i) => "--c" + (i % 4);
   const points = (x, y) => x.map((t, i) => ({ x: t, y: y[i] }));
@@ -53,7 +55,8 @@
     afterLayout(chart) {
       const area = chart.chartArea;
       const box = chart.extent;
-      const scale = Math.max((box.x1 - box.x0) / area.width, (box.y1 - box.y0) / area.height) * 1.06;
+      const scale =
+        1.06 * Math.max((box.x1 - box.x0) / area.width, (box.y1 - box.y0) / area.height);
       const cx = (box.x0 + box.x1) / 2, cy = (box.y0 + box.y1) / 2;
       const want = {
         x: [cx - scale * area.width / 2, cx + scale * area.width / 2],
@@ -99,7 +102,8 @@
       const bound = (sign) =>
         points(e.heading.t, e.heading.sigma.map((s) => (s === null ? null : sign * 3 * s)));
       sets.push(line("", bound(1), "transparent",
-                     { fill: "+1", backgroundColor: faint(slot(i), 0.16), band: true, borderWidth: 0 }));
+                     { fill: "+1", backgroundColor: faint(slot(i), 0.16), band: true,
+                       borderWidth: 0 }));
       sets.push(line("", bound(-1), "transparent", { band: true, borderWidth: 0 }));
     });
     if (top === 0) top = 1;
@@ -110,7 +114,8 @@
   function drawPosition() {
     const sets = run.estimators.map((e, i) =>
       line(e.name, points(e.position.t, e.position.error), color(slot(i))));
-    draw("position", sets, "time [s]", "position error [m]", { y: { beginAtZero: true }, x: wholeRun });
+    draw("position", sets, "time [s]", "position error [m]",
+         { y: { beginAtZero: true }, x: wholeRun });
   }
 
   function drawReadings() {

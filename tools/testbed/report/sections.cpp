@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
@@ -49,6 +49,12 @@ std::string SunText(const sky::SiteOptions& site) {
                      nav::RadToDeg(sun.elevation_rad));
 }
 
+// With a space, where a narrow card may break the line.
+std::string StartText(std::string utc) {
+  std::replace(utc.begin(), utc.end(), 'T', ' ');
+  return utc;
+}
+
 std::string Text(const Json& result, const std::string& path, const char* format) {
   const std::optional<double> value = MetricAt(result, path);
   return value ? fmt::format(fmt::runtime(format), *value) : "–";
@@ -91,8 +97,8 @@ std::string HeaderSection(const ReportInput& input) {
          Figure(Text(result, "real_time_factor", "{:.2f} ×"), "real time") +
          Figure(Text(result, "peak_rss_mb", "{:.0f} MB"), "peak memory") +
          Figure(std::to_string(input.scenario.seed), "seed") +
-         Figure(SunText(s.site), "sun azimuth / elevation") + Figure(s.site.utc, "start") +
-         "</div>";
+         Figure(SunText(s.site), "sun azimuth / elevation") +
+         Figure(StartText(s.site.utc), "start") + "</div>";
 }
 
 std::string ChartSections(const ReportInput& input) {
