@@ -7,7 +7,7 @@ namespace polnav::nav {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.80665;
-constexpr double kBiasTime_s = 60.0;
+constexpr double kBiasTime_s = 30.0;
 
 }  // namespace
 

@@ -13,7 +13,12 @@ struct TrackerOptions {
   int grid_rows = 7;
   int min_distance_px = 14;          // between features
   double corner_quality = 0.01;      // of a cell's corner over the image's best [-]
-  int window_px = 15;                // Lucas-Kanade patch side; larger bears blur, blurs depth edges
+  // Before tracking; 0: none. Noise draws sub-pixel positions towards half pixels, where
+  // interpolation smooths it; less noise, less drift.
+  double smoothing_px = 1.0;
+  // Lucas-Kanade patch side. A large one bears blur, but the ground expands across it as it comes
+  // nearer, and the mean motion of the patch is not that of its centre: a drift in pitch and yaw.
+  int window_px = 13;
   int pyramid_levels = 3;            // above full size; 3 bears motions of about 60 px
   double forward_backward_px = 0.6;  // a track must come back to where it was
   double epipolar_px = 1.2;          // a stereo match must lie on its row in the rectified pair
@@ -26,6 +31,7 @@ struct TrackerOptions {
     v("grid_rows", grid_rows, {.min = 1, .max = 100});
     v("min_distance_px", min_distance_px, {.min = 2, .max = 100});
     v("corner_quality", corner_quality, {.min = 1e-6, .max = 1.0});
+    v("smoothing_px", smoothing_px, {.min = 0.0, .max = 3.0});
     v("window_px", window_px, {.min = 5, .max = 41});
     v("pyramid_levels", pyramid_levels, {.min = 0, .max = 8});
     v("forward_backward_px", forward_backward_px, {.min = 0.05, .max = 10.0});

@@ -8,11 +8,17 @@
 namespace polnav::nav {
 namespace {
 
-const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.01);
+// Stopping at a step of 0.01 px would leave that much of the first guess in every position, always
+// to the same side: 3700 frames of it are degrees of drift.
+const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001);
 
 std::vector<cv::Mat> Pyramid(const cv::Mat& image, const TrackerOptions& options) {
   std::vector<cv::Mat> pyramid;
-  cv::buildOpticalFlowPyramid(image, pyramid, {options.window_px, options.window_px},
+  cv::Mat smooth = image;
+  if (options.smoothing_px > 0.0) {
+    cv::GaussianBlur(image, smooth, {5, 5}, options.smoothing_px);
+  }
+  cv::buildOpticalFlowPyramid(smooth, pyramid, {options.window_px, options.window_px},
                               options.pyramid_levels);
   return pyramid;
 }

@@ -13,19 +13,18 @@
 
 namespace polnav::sim {
 
-#define POLNAV_GL_FUNCTIONS(X)                                                                    \
-  X(AttachShader)                                                                                 \
-  X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) X(BindVertexArray)          \
-      X(BufferData) X(CheckFramebufferStatus) X(Clear) X(CompileShader) X(CreateProgram)          \
-          X(CreateShader) X(CullFace) X(DepthFunc) X(Disable) X(DrawElements) X(Enable)           \
-              X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FrontFace) X(GenBuffers)    \
-                  X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays)        \
-                      X(GenerateMipmap) X(GetError) X(GetProgramInfoLog) X(GetProgramiv)          \
-                          X(GetShaderInfoLog) X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) \
-                              X(PixelStorei) X(ReadPixels) X(RenderbufferStorage) X(ShaderSource) \
-                                  X(TexImage2D) X(TexParameterf) X(TexParameteri) X(Uniform1f)    \
-                                      X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer)    \
-                                          X(Viewport)
+// clang-format off
+#define POLNAV_GL_FUNCTIONS(X) \
+  X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) \
+  X(BindVertexArray) X(BufferData) X(CheckFramebufferStatus) X(Clear) X(CompileShader) \
+  X(CreateProgram) X(CreateShader) X(CullFace) X(DepthFunc) X(Disable) X(DrawElements) \
+  X(Enable) X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FrontFace) \
+  X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) \
+  X(GenerateMipmap) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
+  X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(ReadPixels) \
+  X(RenderbufferStorage) X(ShaderSource) X(TexImage2D) X(TexParameterf) X(TexParameteri) \
+  X(Uniform1f) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
+// clang-format on
 
 // gl.Clear(...) is glClear(...).
 struct GlFunctions {

@@ -62,7 +62,7 @@ double Lighting::OfWhite(const Eigen::Vector3d& normal_W) const {
 }
 
 SkyDome BuildSkyDome(const sky::WorldSky& sky) {
-  constexpr int kSectors = 48;
+  constexpr int kSectors = 24;
   constexpr std::array kRings_deg = {0.001, 0.25,  0.32,  0.9,   2.0,   4.0,   7.0,
                                      12.0,  18.0,  25.0,  33.0,  41.0,  49.0,  57.0,
                                      65.0,  73.0,  81.0,  89.0,  97.0,  105.0, 113.0,

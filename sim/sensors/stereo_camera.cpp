@@ -15,7 +15,7 @@
 namespace polnav::sim {
 namespace {
 
-constexpr double kFocalShare = 0.8;
+constexpr double kFocalShare = 0.75;
 
 std::array<std::uint32_t, 2> NoiseKey(const RandomStream& stream, std::uint64_t index) {
   RandomStream::Sample random = stream.At(index);

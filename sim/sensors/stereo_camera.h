@@ -1,7 +1,7 @@
 // What does a ZED-like stereo camera deliver?
 //
 // Raw, distorted, 8-bit grey pairs, linear in light. The renderer draws an ideal pinhole image that
-// covers the lens's view at 0.8 of its focal length (which stands in for the softness of a small
+// covers the lens's view at 0.75 of its focal length (which stands in for the softness of a small
 // lens), a warp bends it, then shot and read noise are added. The exposure is an instant: no motion
 // blur, no rolling shutter. Both cameras look at the same instant with the same exposure.
 #pragma once

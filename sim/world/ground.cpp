@@ -1,6 +1,7 @@
 #include "sim/world/ground.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -136,55 +137,76 @@ void AddKerbs(const StreetFrame& street, GroundBuilder& ground, int concrete) {
   kerb({{out, top}, {out, below}});
 }
 
+struct GroundTextures {
+  int paving, cobbles, grass, concrete;
+};
+
+// Each band lies a little lower than its neighbour on the road's side and reaches under it.
+constexpr double kStep_m = 0.03;
+constexpr double kUnder_m = 0.25;
+
+// From the inner kerb to the centre: path, grass, and a paved round in the middle.
+void AddPark(const StreetFrame& street, const GroundTextures& textures, GroundBuilder& ground) {
+  const double path = kKerbHeight_m - kStep_m;
+  const double lawn = path - kStep_m;
+  const double meadow = lawn - kStep_m;
+  const double middle = meadow - kStep_m;
+  const double radius = street.radius_m();
+  const double kerb = street.half_road_m() + kKerbWidth_m;
+  const double path_end = kerb + kInnerPath_m;
+  const double round = std::max(0.75 * radius, 0.5 * (path_end + radius));
+  const double lawn_end = std::min(path_end + 7.0, 0.5 * (path_end + round));
+  ground.AddBand(24, 8, {{kerb - 0.2, path}, {path_end, path}}, textures.paving, 4.0);
+  ground.AddBand(
+      24, 8,
+      {{path_end - kUnder_m, lawn}, {0.8 * path_end + 0.2 * lawn_end, lawn}, {lawn_end, lawn}},
+      textures.grass, 3.7);
+  ground.AddBand(
+      12, 7, {{lawn_end - kUnder_m, meadow}, {0.5 * (lawn_end + round), meadow}, {round, meadow}},
+      textures.grass, 3.7);
+  ground.AddBand(6, 5,
+                 {{round - kUnder_m, middle}, {0.5 * (round + radius), middle}, {radius, middle}},
+                 textures.paving, 4.0);
+}
+
+// From the road's outer edge outwards: parking bay, pavement, grass, forecourts, the town.
+void AddOutside(const StreetFrame& street, const GroundTextures& textures, GroundBuilder& ground) {
+  const double edge = -street.half_road_m();
+  const double bay = edge - kBayWidth_m;
+  const double pavement = bay - kKerbWidth_m - kOuterPavement_m;
+  const double verge = pavement - kVerge_m;
+  const double forecourt = verge - 24.0;
+  const double high = kKerbHeight_m - kStep_m;
+  ground.AddBand(24, 8, {{bay - 0.1, -kStep_m}, {bay + 1.2, -kStep_m}, {edge + kUnder_m, -kStep_m}},
+                 textures.cobbles, 2.6);
+  ground.AddBand(24, 8,
+                 {{pavement, high}, {pavement + 3.0, high}, {bay - kKerbWidth_m + 0.2, high}},
+                 textures.paving, 4.0);
+  ground.AddBand(24, 5, {{verge, high - kStep_m}, {pavement + kUnder_m, high - kStep_m}},
+                 textures.grass, 3.7);
+  const double low = high - 2.0 * kStep_m;
+  ground.AddBand(24, 4, {{forecourt, low}, {verge - 10.0, low}, {verge + kUnder_m, low}},
+                 textures.cobbles, 5.2);
+  const double lowest = low - kStep_m;
+  ground.AddBand(12, 4,
+                 {{verge - 200.0, lowest}, {verge - 80.0, lowest}, {forecourt + kUnder_m, lowest}},
+                 textures.concrete, 23.0);
+}
+
 }  // namespace
 
 void AddGround(const StreetFrame& street, std::uint64_t seed, SceneBuilder& scene) {
   GroundBuilder ground(street, seed, scene);
   AddRoad(street, seed, ground, scene);
-
-  const RandomStream stream(seed, 0, "plaza/ground");
-  Sample random = stream.At(0);
-  const int paving = scene.AddTexture(PavingTexture(8, 1.0, random));
-  const int cobbles = scene.AddTexture(PavingTexture(16, 1.3, random));
-  const int grass = scene.AddTexture(GrassTexture(random));
-  const int concrete = scene.AddTexture(PavingTexture(2, 1.2, random));
-  AddKerbs(street, ground, concrete);
-
-  // Each band lies a little lower than its neighbour on the road's side and reaches under it.
-  const double h = kKerbHeight_m - 0.03;
-  const double low = h - 0.03;
-  const double under = 0.25;
-  const double edge = street.half_road_m();
-  const double in = edge + kKerbWidth_m;
-  const double path = in + kInnerPath_m;
-  const double bay = -edge - kBayWidth_m;
-  const double pavement = bay - kKerbWidth_m - kOuterPavement_m;
-  const double verge = pavement - kVerge_m;
-  const double radius = street.radius_m();
-  const double round = 0.75 * radius;  // the middle of the park is paved
-  ground.AddBand(24, 8, {{bay - 0.1, -0.03}, {bay + 1.2, -0.03}, {under - edge, -0.03}}, cobbles,
-                 2.6);
-  ground.AddBand(24, 8, {{in - 0.2, h}, {path, h}}, paving, 4.0);
-  ground.AddBand(24, 8, {{path - under, low}, {path + 1.5, low}, {path + 7.0, low}}, grass, 3.7);
-  ground.AddBand(12, 7,
-                 {{path + 7.0 - under, low - 0.03},
-                  {0.5 * (path + 7.0 + round), low - 0.03},
-                  {round, low - 0.03}},
-                 grass, 3.7);
-  ground.AddBand(
-      6, 5,
-      {{round - under, low - 0.06}, {0.5 * (round + radius), low - 0.06}, {radius, low - 0.06}},
-      paving, 4.0);
-  ground.AddBand(24, 8, {{pavement, h}, {pavement + 3.0, h}, {bay - kKerbWidth_m + 0.2, h}}, paving,
-                 4.0);
-  ground.AddBand(24, 5, {{verge, low}, {pavement + under, low}}, grass, 3.7);
-  ground.AddBand(
-      24, 4, {{verge - 24.0, low - 0.03}, {verge - 10.0, low - 0.03}, {verge + under, low - 0.03}},
-      cobbles, 5.2);
-  ground.AddBand(
-      12, 4,
-      {{verge - 200.0, low - 0.06}, {verge - 80.0, low - 0.06}, {verge - 24.0 + under, low - 0.06}},
-      concrete, 23.0);
+  Sample random = RandomStream(seed, 0, "plaza/ground").At(0);
+  // Braces keep the order of the draws.
+  const GroundTextures textures{scene.AddTexture(PavingTexture(8, 1.0, random)),
+                                scene.AddTexture(PavingTexture(16, 1.3, random)),
+                                scene.AddTexture(GrassTexture(random)),
+                                scene.AddTexture(PavingTexture(2, 1.2, random))};
+  AddKerbs(street, ground, textures.concrete);
+  AddPark(street, textures, ground);
+  AddOutside(street, textures, ground);
 }
 
 }  // namespace polnav::sim

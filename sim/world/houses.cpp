@@ -120,30 +120,31 @@ void AddHouse(const House& house, const HouseTextures& textures, Sample& random,
   }
 }
 
-}  // namespace
+House DrawHouse(double mean_height_m, Sample& random) {
+  House house{};
+  house.bays = 3 + static_cast<int>(random.Bits() % 6);
+  const double mean = mean_height_m / kBay_m;
+  house.storeys = std::max(2, static_cast<int>(std::lround(mean * (0.5 + random.Uniform()))));
+  house.depth_m = 8.0 + 6.0 * random.Uniform();
+  house.style = static_cast<int>(random.Bits() % kStyles);
+  house.shop_style = static_cast<int>(random.Bits() % kShopStyles);
+  house.shade = 0.75 + 0.5 * random.Uniform();
+  return house;
+}
 
-void AddHouses(const PlazaOptions& options, const StreetFrame& street, std::uint64_t seed,
-               SceneBuilder& scene) {
-  const RandomStream stream(seed, 0, "plaza/houses");
-  const HouseTextures textures = MakeTextures(stream, scene);
-  Sample random = stream.At(1000);
+// A row around the plaza, wall to wall with some gaps.
+void AddRow(const PlazaOptions& options, const StreetFrame& street, const HouseTextures& textures,
+            Sample& random, SceneBuilder& scene) {
   double s = 0.0;
   while (true) {
-    House house{};
-    house.bays = 3 + static_cast<int>(random.Bits() % 6);
-    const double mean = options.facade_height_m / kBay_m;
-    house.storeys = std::max(2, static_cast<int>(std::lround(mean * (0.5 + random.Uniform()))));
-    house.depth_m = 8.0 + 6.0 * random.Uniform();
-    house.style = static_cast<int>(random.Bits() % kStyles);
-    house.shop_style = static_cast<int>(random.Bits() % kShopStyles);
-    house.shade = 0.75 + 0.5 * random.Uniform();
+    House house = DrawHouse(options.facade_height_m, random);
     const double set_back = 14.0 * random.Uniform() * random.Uniform();
     const double offset = -street.half_road_m() - options.facade_distance_m - set_back;
     const double gap = random.Uniform() < 0.2 ? 9.0 : 1.5 * random.Uniform();
     // Arc length on the road that the front takes up at its distance from the centre.
     const double shrink = street.radius_m() / (street.radius_m() - offset);
     const double span = (kBay_m * house.bays + gap) * shrink;
-    if (s + span > street.length_m()) break;
+    if (s + span > street.length_m()) return;
     const double middle = s + 0.5 * span;
     house.foot_m = street.At(middle, offset, kKerbHeight_m);
     // Seen from the road, right is against the driving direction.
@@ -151,20 +152,35 @@ void AddHouses(const PlazaOptions& options, const StreetFrame& street, std::uint
     AddHouse(house, textures, random, scene);
     s += span;
   }
-  // Towers further out close the view between the houses.
+}
+
+// Towers further out close the view between the houses.
+void AddTowers(const StreetFrame& street, const HouseTextures& textures, Sample& random,
+               SceneBuilder& scene) {
   constexpr int kTowers = 22;
   for (int i = 0; i < kTowers; ++i) {
     const double at = street.length_m() * (i + 0.6 * random.Uniform()) / kTowers;
-    House tower{.foot_m = street.At(at, -75.0 - 60.0 * random.Uniform(), 0.0),
-                .yaw_rad = street.Yaw(at) + M_PI + 0.2 * random.Gaussian(),
-                .bays = 5 + static_cast<int>(random.Bits() % 5),
-                .storeys = 8 + static_cast<int>(random.Bits() % 9),
-                .depth_m = 14.0,
-                .style = static_cast<int>(random.Bits() % kStyles),
-                .shop_style = 0,
-                .shade = 0.8 + 0.4 * random.Uniform()};
+    const House tower{.foot_m = street.At(at, -75.0 - 60.0 * random.Uniform(), 0.0),
+                      .yaw_rad = street.Yaw(at) + M_PI + 0.2 * random.Gaussian(),
+                      .bays = 5 + static_cast<int>(random.Bits() % 5),
+                      .storeys = 8 + static_cast<int>(random.Bits() % 9),
+                      .depth_m = 14.0,
+                      .style = static_cast<int>(random.Bits() % kStyles),
+                      .shop_style = 0,
+                      .shade = 0.8 + 0.4 * random.Uniform()};
     AddHouse(tower, textures, random, scene);
   }
+}
+
+}  // namespace
+
+void AddHouses(const PlazaOptions& options, const StreetFrame& street, std::uint64_t seed,
+               SceneBuilder& scene) {
+  const RandomStream stream(seed, 0, "plaza/houses");
+  const HouseTextures textures = MakeTextures(stream, scene);
+  Sample random = stream.At(1000);
+  AddRow(options, street, textures, random, scene);
+  AddTowers(street, textures, random, scene);
 }
 
 }  // namespace polnav::sim

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include <stdexcept>
+#include <string>
 
 #include "sim/world/ground.h"
 #include "sim/world/houses.h"
@@ -30,6 +32,13 @@ void ScaleContrast(double contrast, Scene& scene) {
 
 Scene BuildPlaza(const PlazaOptions& options, const Track& track, const Terrain& terrain,
                  std::uint64_t seed) {
+  // Kerb, path and some park must fit inside.
+  const double least_radius = 0.5 * track.road_width_m() + kKerbWidth_m + kInnerPath_m + 2.0;
+  if (track.mean_radius_m() < least_radius) {
+    throw std::invalid_argument("a loop of " + std::to_string(track.length_m()) +
+                                " m is too short for a plaza with a road " +
+                                std::to_string(track.road_width_m()) + " m wide");
+  }
   const StreetFrame street(track, terrain);
   SceneBuilder builder;
   AddGround(street, seed, builder);

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+#include <stdexcept>
 
 #include "sim/sensors/lens.h"
 #include "sim/sensors/stereo_camera.h"
@@ -124,6 +125,11 @@ TEST_F(PlazaTest, TracksFromFrameToFrameWithinAFifthOfAPixel) {
   ASSERT_GT(off_px.size(), 250U);
   std::nth_element(off_px.begin(), off_px.begin() + off_px.size() / 2, off_px.end());
   EXPECT_LT(off_px[off_px.size() / 2], 0.2);
+}
+
+TEST_F(PlazaTest, RefusesALoopWithNoRoomForAPark) {
+  const Track short_loop({.length_m = 40.0, .noncircularity = 0.0, .road_width_m = 4.0});
+  EXPECT_THROW(static_cast<void>(BuildPlaza({}, short_loop, terrain, 1)), std::invalid_argument);
 }
 
 TEST_F(PlazaTest, IsPlainWithoutContrast) {

@@ -1,0 +1,125 @@
+#include "sim/simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <opencv2/core.hpp>
+
+#include "sim/measurement_stream.h"
+
+namespace polnav::sim {
+namespace {
+
+// A small camera and a bare plaza, so that a few frames are quick.
+SimulatorOptions SmallOptions() {
+  SimulatorOptions options;
+  options.world.plaza = {.tree_count = 3, .lamp_count = 3, .parked_car_count = 2,
+                         .furniture_count = 3};
+  options.sensors.stereo = StereoCameraOptions{.width_px = 160, .height_px = 96, .focal_px = 90.0};
+  options.sensors.imu = ImuOptions{};
+  options.sensors.polarimeter = PolarimeterOptions{};
+  options.sensors.reference = ReferenceOptions{};
+  return options;
+}
+
+// Everything that a stream says, sensor by sensor, as numbers.
+using Record = std::map<std::string, std::vector<double>>;
+
+struct Recorder {
+  Record& record;
+
+  void Vector(const char* name, const Eigen::Vector3d& v) const {
+    record[name].insert(record[name].end(), {v.x(), v.y(), v.z()});
+  }
+  void operator()(const nav::ImuSample& m) const {
+    Vector("imu", m.gyro_rad_s);
+    Vector("imu", m.accel_m_s2);
+  }
+  void operator()(const nav::StereoImages& m) const {
+    for (const cv::Mat& image : {m.left, m.right}) {
+      for (int row = 0; row < image.rows; ++row) {
+        record["stereo"].insert(record["stereo"].end(), image.ptr(row), image.ptr(row) + image.cols);
+      }
+    }
+  }
+  void operator()(const nav::PolarizationSample& m) const {
+    record["polarimeter"].insert(record["polarimeter"].end(), m.channel.begin(), m.channel.end());
+  }
+  void operator()(const nav::ReferencePose& m) const {
+    Vector("reference", m.T_WB.p);
+    Vector("reference", m.v_WB_m_s);
+  }
+  void operator()(const auto&) const { FAIL() << "no sensor of this simulator says that"; }
+};
+
+Record Run(const SimulatorOptions& options, const RunKey& key, double duration_s,
+           int render_threads = 1) {
+  Record record;
+  nav::TimeNs newest = 0;
+  MeasurementStream stream(options, key, nav::FromSeconds(duration_s), render_threads);
+  while (const auto item = stream.Next()) {
+    if (const auto* truth = std::get_if<Truth>(&*item)) {
+      Recorder{record}.Vector("truth", truth->T_WB.p);
+      continue;
+    }
+    const auto& measurement = std::get<nav::Measurement>(*item);
+    EXPECT_GE(nav::StampOf(measurement), newest) << "stamps never go back";
+    newest = nav::StampOf(measurement);
+    std::visit(Recorder{record}, measurement);
+  }
+  return record;
+}
+
+TEST(Simulator, SamplesEverySensorAtItsRate) {
+  const Record record = Run(SmallOptions(), {1, 0}, 1.0);
+  EXPECT_EQ(record.at("truth").size(), 3U * 11U);
+  EXPECT_EQ(record.at("imu").size(), 6U * 100U) << "no mean over an interval before time zero";
+  EXPECT_EQ(record.at("polarimeter").size(), 6U * 21U);
+  EXPECT_EQ(record.at("reference").size(), 6U * 101U);
+  EXPECT_EQ(record.at("stereo").size(), 11U * 2U * 160U * 96U);
+}
+
+TEST(Simulator, SameSeedSameBytesWithOneRenderThreadOrTwo) {
+  const Record once = Run(SmallOptions(), {1, 0}, 1.0, 1);
+  EXPECT_EQ(once, Run(SmallOptions(), {1, 0}, 1.0, 2));
+}
+
+TEST(Simulator, EverySeedAndTrialIsAnotherRun) {
+  SimulatorOptions options = SmallOptions();
+  options.sensors.stereo.reset();
+  const Record once = Run(options, {1, 0}, 3.0);
+  for (const RunKey& other : {RunKey{2, 0}, RunKey{1, 1}}) {
+    const Record record = Run(options, other, 3.0);
+    for (const char* stream : {"truth", "imu", "polarimeter", "reference"}) {
+      EXPECT_NE(once.at(stream), record.at(stream)) << stream;
+    }
+  }
+}
+
+TEST(Simulator, LeavingASensorOutLeavesTheOthersAsTheyAre) {
+  const Record all = Run(SmallOptions(), {1, 0}, 1.0);
+  SimulatorOptions options = SmallOptions();
+  options.sensors.imu.reset();
+  options.sensors.reference.reset();
+  Record rest = all;
+  rest.erase("imu");
+  rest.erase("reference");
+  EXPECT_EQ(rest, Run(options, {1, 0}, 1.0));
+}
+
+TEST(Simulator, NobodyNeedsToReadAStreamToItsEnd) {
+  MeasurementStream stream(SmallOptions(), {1, 0}, nav::FromSeconds(60.0), 2);
+  EXPECT_TRUE(stream.Next());
+}
+
+TEST(Simulator, ARateBetweenPhysicsStepsIsRefused) {
+  EXPECT_TRUE(IsSampleRate(20.0));
+  EXPECT_FALSE(IsSampleRate(60.0)) << "16.67 ms is no multiple of 2 ms";
+  EXPECT_FALSE(IsSampleRate(1000.0));
+  SimulatorOptions options = SmallOptions();
+  options.sensors.imu->rate_hz = 60.0;
+  EXPECT_THROW(Simulator(options, {1, 0}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace polnav::sim
