@@ -51,8 +51,7 @@ void MeasurementStream::Simulate(nav::TimeNs duration) {
 bool MeasurementStream::Push(const Simulator::Emission& emission) {
   std::unique_lock lock(mutex_);
   room_.wait(lock, [&] {
-    return abandoned_ ||
-           (frames_under_way_ < frames_under_way_max_ && slots_.size() < kSlotsMax);
+    return abandoned_ || (frames_under_way_ < frames_under_way_max_ && slots_.size() < kSlotsMax);
   });
   if (const auto* request = std::get_if<FrameRequest>(&emission)) {
     jobs_.push_back({*request, {}});
@@ -87,8 +86,8 @@ void MeasurementStream::TakePictures() {
                        *options_.sensors.stereo, key_.seed, key_.trial);
       }
       const auto begin = std::chrono::steady_clock::now();
-      TimedImages taken{.images = camera->Capture(job.request.T_WB, job.request.stamp,
-                                                  job.request.index)};
+      TimedImages taken{
+          .images = camera->Capture(job.request.T_WB, job.request.stamp, job.request.index)};
       const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
       taken.render_ms = ms.count();
       job.done.set_value(std::move(taken));

@@ -60,9 +60,9 @@ class MeasurementStream {
   std::size_t frames_under_way_max_;
 
   std::mutex mutex_;
-  std::condition_variable room_;      // for the simulator: a frame was handed over
-  std::condition_variable job_;       // for the cameras: a picture is wanted
-  std::condition_variable ready_;     // for Next(): something was pushed
+  std::condition_variable room_;   // for the simulator: a frame was handed over
+  std::condition_variable job_;    // for the cameras: a picture is wanted
+  std::condition_variable ready_;  // for Next(): something was pushed
   std::deque<Slot> slots_;
   std::deque<FrameJob> jobs_;
   std::size_t frames_under_way_ = 0;

@@ -11,7 +11,7 @@ namespace polnav::sim {
 struct Truth {
   nav::TimeNs stamp = 0;
   nav::Pose T_WB;
-  Eigen::Vector3d v_WB_m_s = Eigen::Vector3d::Zero();    // of B's origin, in W
+  Eigen::Vector3d v_WB_m_s = Eigen::Vector3d::Zero();      // of B's origin, in W
   Eigen::Vector3d w_WB_B_rad_s = Eigen::Vector3d::Zero();  // of B relative to W, in B
 };
 

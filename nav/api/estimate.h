@@ -31,18 +31,18 @@ struct Estimate {
 
 enum class Outcome {
   kUsed,
-  kGated,        // inconsistent with the estimate
-  kUnusable,     // no information: too dim, too few features, failed self-check
-  kIgnored,      // this estimator has no use for it
+  kGated,     // inconsistent with the estimate
+  kUnusable,  // no information: too dim, too few features, failed self-check
+  kIgnored,   // this estimator has no use for it
 };
 
 // What became of one measurement.
 struct Report {
   Outcome outcome = Outcome::kIgnored;
-  int features = 0;          // offered
-  int inliers = 0;           // used
-  int flow_rejected = 0;     // moved otherwise than the scene [Chu2021, eq. 12]
-  int keyframes = 0;         // 1 when this measurement made one
+  int features = 0;                  // offered
+  int inliers = 0;                   // used
+  int flow_rejected = 0;             // moved otherwise than the scene [Chu2021, eq. 12]
+  int keyframes = 0;                 // 1 when this measurement made one
   std::optional<Estimate> estimate;  // present when the measurement produced one
 };
 

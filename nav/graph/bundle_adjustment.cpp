@@ -72,9 +72,9 @@ class Problem {
                                      coordinates);
           continue;
         }
-        problem_->AddResidualBlock(
-            new ReprojectionCost(camera_, s.pixel, options_.sigmas), &huber_, poses_[host].data(),
-            poses_[IndexOf(window_, s.keyframe)].data(), coordinates);
+        problem_->AddResidualBlock(new ReprojectionCost(camera_, s.pixel, options_.sigmas), &huber_,
+                                   poses_[host].data(), poses_[IndexOf(window_, s.keyframe)].data(),
+                                   coordinates);
       }
     }
   }

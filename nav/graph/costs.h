@@ -167,7 +167,7 @@ class PriorCost final : public ceres::CostFunction {
       r += block * delta;
       if (jacobians == nullptr || jacobians[i] == nullptr) continue;
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>> J(jacobians[i], rows,
-                                                                             7);
+                                                                              7);
       J.setZero();
       J.leftCols<3>() = block.leftCols<3>();
       J.middleCols<3>(3) = block.rightCols<3>() * InverseLeftJacobian(delta.tail<3>());

@@ -18,7 +18,8 @@ HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB) {
   const double horizontal2 = x_W.head<2>().squaredNorm();
   HeadingResidual r;
   r.residual = WrapPi(edge.heading_rad - CompassHeading(T_WB.q)) / edge.sigma_rad;
-  // psi = atan2(x_E, x_N) and dx = dtheta x x, hence dpsi = (x_N dx_E - x_E dx_N) / (x_E^2 + x_N^2).
+  // psi = atan2(x_E, x_N) and dx = dtheta x x, hence dpsi = (x_N dx_E - x_E dx_N) / (x_E^2 +
+  // x_N^2).
   const Eigen::RowVector3d by_x(x_W.y() / horizontal2, -x_W.x() / horizontal2, 0.0);
   r.by_pose.setZero();
   r.by_pose.tail<3>() = by_x * Skew(x_W) / edge.sigma_rad;

@@ -14,7 +14,8 @@
 namespace polnav::nav {
 
 // Turns the oldest keyframe, with the landmarks it hosts and all their sightings, into a prior on
-// the others. A track that is still seen afterwards begins a new landmark: no sighting counts twice.
+// the others. A track that is still seen afterwards begins a new landmark: no sighting counts
+// twice.
 void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
                        Window& window);
 

@@ -1,8 +1,8 @@
 // What does the sliding window hold?
 //
 // The graph of [Chu2021, eqs 13-16]: vertices are keyframe poses and landmarks; edges are stereo
-// reprojections (e1-e3), headings from polarization (e4), the accelerometer's level, and the prior that
-// marginalization leaves of what has slid out. Plain data; bundle_adjustment.h and
+// reprojections (e1-e3), headings from polarization (e4), the accelerometer's level, and the prior
+// that marginalization leaves of what has slid out. Plain data; bundle_adjustment.h and
 // marginalization.h work on it.
 #pragma once
 
@@ -45,9 +45,9 @@ struct Sighting {
 };
 
 struct Landmark {
-  std::uint64_t host = 0;            // Keyframe::id, always one in the window
-  Eigen::Vector3d coordinates;       // (X/Z, Y/Z, 1/Z) in the host's camera
-  std::vector<Sighting> sightings;   // in order of keyframes; the host's own is first
+  std::uint64_t host = 0;           // Keyframe::id, always one in the window
+  Eigen::Vector3d coordinates;      // (X/Z, Y/Z, 1/Z) in the host's camera
+  std::vector<Sighting> sightings;  // in order of keyframes; the host's own is first
 };
 
 // 1/2 | residual + jacobian * delta |^2 where delta stacks Difference(pose, linearized) of the
@@ -59,7 +59,7 @@ struct Prior {
 };
 
 struct Window {
-  std::deque<Keyframe> keyframes;              // oldest first
+  std::deque<Keyframe> keyframes;               // oldest first
   std::map<std::uint64_t, Landmark> landmarks;  // by track id: ordered, so that sums are too
   Prior prior;
 };

@@ -61,8 +61,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const TimeNs before = window_.keyframes.empty() ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Pose expected = PredictPose(features.stamp);
-  const std::vector<LandmarkView> views =
-      RejectMoving(MatchLandmarks(features), expected, report);
+  const std::vector<LandmarkView> views = RejectMoving(MatchLandmarks(features), expected, report);
   const auto solution = SolvePose(camera_, views, expected, solver_, options_.min_inliers);
   const bool starting = window_.keyframes.empty();
   if (solution) {

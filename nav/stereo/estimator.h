@@ -1,8 +1,9 @@
 // Where is the vehicle, from stereo features and the polarized sky?
 //
-// Stereo visual odometry over a sliding window [Chu2021, section 2]: flow rejection, pose, keyframe,
-// bundle adjustment, marginalization; with a polarimeter given, its headings are edges of the same
-// graph; with an IMU in the rig, its accelerometer keeps pitch and roll from drifting. Both of the paper's estimators are this class:
+// Stereo visual odometry over a sliding window [Chu2021, section 2]: flow rejection, pose,
+// keyframe, bundle adjustment, marginalization; with a polarimeter given, its headings are edges of
+// the same graph; with an IMU in the rig, its accelerometer keeps pitch and roll from drifting.
+// Both of the paper's estimators are this class:
 //   stereo               no polarization
 //   stereo_polarization  with it
 // Starts from what the scenario grants. Fails where no texture is seen for long: it then coasts at
@@ -62,10 +63,10 @@ class StereoEstimator {
   std::uint64_t next_keyframe_ = 0;
   std::set<std::uint64_t> rejected_;  // tracks that do not belong to the static scene
 
-  TimeNs stamp_ = 0;   // of the newest frame
-  TimeNs step_ = 0;    // between the newest two
-  Pose T_WB_;          // at the newest frame
-  Pose motion_;        // T_BpB from the frame before to the newest one
+  TimeNs stamp_ = 0;  // of the newest frame
+  TimeNs step_ = 0;   // between the newest two
+  Pose T_WB_;         // at the newest frame
+  Pose motion_;       // T_BpB from the frame before to the newest one
   Matrix6d covariance_ = Matrix6d::Zero();
 };
 

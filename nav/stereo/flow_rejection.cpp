@@ -17,8 +17,8 @@ double Median(std::vector<double> values) {
 }
 
 struct Departure {
-  Eigen::Vector2d px;     // seen minus predicted
-  double predicted_px;    // length of the predicted displacement
+  Eigen::Vector2d px;   // seen minus predicted
+  double predicted_px;  // length of the predicted displacement
 };
 
 }  // namespace
@@ -31,7 +31,8 @@ std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
   std::vector<double> u;
   std::vector<double> v;
   for (const LandmarkView& view : views) {
-    const auto now = Reproject(camera, *view.T_WBh, T_WB_expected, view.landmark, view.pixel, in_px);
+    const auto now =
+        Reproject(camera, *view.T_WBh, T_WB_expected, view.landmark, view.pixel, in_px);
     const auto then = Reproject(camera, *view.T_WBh, T_WB_before, view.landmark, view.pixel, in_px);
     departures.emplace_back();
     if (!now || !then) continue;

@@ -19,9 +19,9 @@
 namespace polnav::nav {
 
 struct LevellingOptions {
-  double first_interval_s = 1.0;   // of the first answer: the vehicle is expected to stand
-  double interval_s = 3.0;         // of the later ones; longer: vision's velocity matters less
-  double bias_sigma_deg = 0.15;    // tilt that the accelerometer's bias and misalignment fake
+  double first_interval_s = 1.0;     // of the first answer: the vehicle is expected to stand
+  double interval_s = 3.0;           // of the later ones; longer: vision's velocity matters less
+  double bias_sigma_deg = 0.15;      // tilt that the accelerometer's bias and misalignment fake
   double velocity_sigma_m_s = 0.05;  // of vision's velocity
 
   template <typename Visitor>
@@ -54,8 +54,8 @@ class Levelling {
  private:
   struct Frame {
     TimeNs stamp;
-    Pose pose;                     // in a frame of vision's own that begins with the interval
-    Eigen::Vector3d force_B;       // mean specific force since the frame before, in B half way
+    Pose pose;                // in a frame of vision's own that begins with the interval
+    Eigen::Vector3d force_B;  // mean specific force since the frame before, in B half way
   };
 
   [[nodiscard]] double SpanSeconds() const;

@@ -8,18 +8,21 @@ namespace polnav::nav {
 // The front end: corners spread over the image, followed by Lucas-Kanade in the left image and
 // across to the right one, checked both ways.
 struct TrackerOptions {
-  int max_features = 160;            // more: steadier and slower
-  int grid_columns = 12;             // the image is cut into cells that share the features evenly
-  int grid_rows = 7;
-  int min_distance_px = 14;          // between features
-  double corner_quality = 0.01;      // of a cell's corner over the image's best [-]
-  // Before tracking; 0: none. Noise draws sub-pixel positions towards half pixels, where
-  // interpolation smooths it; less noise, less drift.
+  int max_features = 300;  // more: steadier and slower
+  int grid_columns = 16;   // the image is cut into cells that share the features evenly
+  int grid_rows = 9;
+  int min_distance_px = 10;      // between features
+  double corner_quality = 0.01;  // of a cell's corner over the image's best [-]
+  // Sigma of a blur before tracking; 0: none. Takes noise and aliasing from the patches, and detail.
   double smoothing_px = 1.0;
   // Lucas-Kanade patch side. A large one bears blur, but the ground expands across it as it comes
   // nearer, and the mean motion of the patch is not that of its centre: a drift in pitch and yaw.
-  int window_px = 13;
-  int pyramid_levels = 3;            // above full size; 3 bears motions of about 60 px
+  int window_px = 11;
+  int pyramid_levels = 3;  // above full size; 3 bears motions of about 60 px
+  // A track is held against the picture where it began until its depth has changed by this ratio
+  // or it lies further than this from where the last picture says; then it begins anew.
+  double reference_scale = 1.25;
+  double reference_px = 1.0;
   double forward_backward_px = 0.6;  // a track must come back to where it was
   double epipolar_px = 1.2;          // a stereo match must lie on its row in the rectified pair
   double max_disparity_px = 120.0;
@@ -34,6 +37,8 @@ struct TrackerOptions {
     v("smoothing_px", smoothing_px, {.min = 0.0, .max = 3.0});
     v("window_px", window_px, {.min = 5, .max = 41});
     v("pyramid_levels", pyramid_levels, {.min = 0, .max = 8});
+    v("reference_scale", reference_scale, {.min = 1.0, .max = 4.0});
+    v("reference_px", reference_px, {.min = 0.0, .max = 10.0});
     v("forward_backward_px", forward_backward_px, {.min = 0.05, .max = 10.0});
     v("epipolar_px", epipolar_px, {.min = 0.1, .max = 10.0});
     v("max_disparity_px", max_disparity_px, {.min = 1.0, .max = 1000.0});
@@ -42,17 +47,17 @@ struct TrackerOptions {
 
 struct StereoOptions {
   TrackerOptions tracker;
-  double pixel_sigma_px = 0.35;      // of a tracked position; larger trusts vision less
+  double pixel_sigma_px = 0.35;  // of a tracked position; larger trusts vision less
   double disparity_sigma_px = 0.30;
-  double flow_threshold_px = 4.0;    // A of [Chu2021, eq. 12]: departure from the predicted flow
-  double inlier_sigmas = 3.0;        // departure from the solved pose that makes an outlier
-  int min_inliers = 12;              // fewer: the frame is not tracked, the estimate coasts
-  int window_keyframes = 8;          // longer: less drift, slower (cost grows with its square)
-  double keyframe_distance_m = 1.0;
+  double flow_threshold_px = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
+  double inlier_sigmas = 3.0;      // departure from the solved pose that makes an outlier
+  int min_inliers = 12;            // fewer: the frame is not tracked, the estimate coasts
+  int window_keyframes = 8;        // longer: less drift, slower (cost grows with its square)
+  double keyframe_distance_m = 1.4;
   double keyframe_angle_deg = 4.0;
-  double keyframe_overlap = 0.5;     // a keyframe too when fewer of the last one's points are left
-  int max_iterations = 6;            // of the bundle adjustment, a keyframe
-  LevellingOptions levelling;        // only with an IMU in the rig
+  double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
+  int max_iterations = 6;         // of the bundle adjustment, a keyframe
+  LevellingOptions levelling;     // only with an IMU in the rig
 
   template <typename Visitor>
   void Visit(Visitor& v) {

@@ -16,8 +16,7 @@ Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>&
                  const Pose& T_WB, const PoseSolverOptions& options) {
   Normal n;
   for (const LandmarkView& view : views) {
-    const auto e =
-        Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);
+    const auto e = Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);
     if (!e) continue;
     const double norm = e->residual.norm();
     const double weight = norm <= options.huber_sigmas ? 1.0 : options.huber_sigmas / norm;

@@ -6,15 +6,15 @@
 namespace polnav::nav {
 namespace {
 
-constexpr double kMinDepthRatio = 1e-3;  // of the target's depth over the host's
+constexpr double kMinDepthRatio = 1e-3;        // of the target's depth over the host's
 constexpr double kMinInverseDepth_1_m = 1e-5;  // 100 km: further is the same as infinity
 
 // The landmark in C of keyframe j, times its inverse depth in the host: finite up to infinity.
 //   y = R_CB (R_WBj^T w - rho p_BC),  w = R_WBh (R_BC m + rho p_BC) + rho (p_WBh - p_WBj)
 struct Transfer {
-  Eigen::Matrix3d R_CW;     // of the target
-  Eigen::Matrix3d R_WCh;    // of the host
-  Eigen::Vector3d arm_W;    // R_WBh (R_BC m + rho p_BC): the point seen from the host's body
+  Eigen::Matrix3d R_CW;   // of the target
+  Eigen::Matrix3d R_WCh;  // of the host
+  Eigen::Vector3d arm_W;  // R_WBh (R_BC m + rho p_BC): the point seen from the host's body
   Eigen::Vector3d w;
   Eigen::Vector3d y;
 };
@@ -55,7 +55,7 @@ std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Pose&
       seen.disparity_px.value_or(0.0) - fb_z * rho;
   r.residual.array() *= weights.array();
 
-  Eigen::Matrix3d by_y;  // of the residual
+  Eigen::Matrix3d by_y;                                        // of the residual
   by_y << -camera.f_px * inv_z, 0.0, camera.f_px * x * inv_z,  //
       0.0, -camera.f_px * inv_z, camera.f_px * y * inv_z,      //
       0.0, 0.0, fb_z * rho * inv_z;
@@ -70,8 +70,7 @@ std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Pose&
   // arm_W is linear in rho through the lever arm; the lever arms of host and target differ only
   // by the attitude between them.
   const Eigen::Vector3d w_by_rho = T_WBh.q * camera.T_BC.p + T_WBh.p - T_WBj.p;
-  r.by_landmark.col(2) =
-      by_y * (t.R_CW * w_by_rho - camera.T_BC.q.conjugate() * camera.T_BC.p);
+  r.by_landmark.col(2) = by_y * (t.R_CW * w_by_rho - camera.T_BC.q.conjugate() * camera.T_BC.p);
   r.by_landmark(2, 2) -= weights.z() * fb_z;
   return r;
 }

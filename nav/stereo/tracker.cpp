@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+#include <set>
 #include <stdexcept>
 
 namespace polnav::nav {
@@ -12,7 +13,9 @@ namespace {
 // to the same side: 3700 frames of it are degrees of drift.
 const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001);
 
-std::vector<cv::Mat> Pyramid(const cv::Mat& image, const TrackerOptions& options) {
+constexpr std::uint64_t kNoReference = ~std::uint64_t{0};
+
+std::vector<cv::Mat> BuildPyramid(const cv::Mat& image, const TrackerOptions& options) {
   std::vector<cv::Mat> pyramid;
   cv::Mat smooth = image;
   if (options.smoothing_px > 0.0) {
@@ -45,8 +48,8 @@ std::vector<bool> FollowBothWays(const std::vector<cv::Mat>& from_pyramid,
   const auto limit = static_cast<float>(options.forward_backward_px);
   for (std::size_t i = 0; i < from.size(); ++i) {
     const cv::Point2f d = back[i] - from[i];
-    const bool inside = to[i].x >= 1 && to[i].y >= 1 && to[i].x < size.width - 2 &&
-                        to[i].y < size.height - 2;
+    const bool inside =
+        to[i].x >= 1 && to[i].y >= 1 && to[i].x < size.width - 2 && to[i].y < size.height - 2;
     ok[i] = status[i] != 0 && status_back[i] != 0 && inside && d.dot(d) < limit * limit;
   }
   return ok;
@@ -61,12 +64,18 @@ StereoFeatures StereoTracker::Track(const StereoImages& images) {
   if (images.left.type() != CV_8UC1 || images.left.size() != images.right.size()) {
     throw std::logic_error("StereoTracker: needs two 8-bit grey images of one size");
   }
-  const std::vector<cv::Mat> left = Pyramid(images.left, options_);
-  const std::vector<cv::Mat> right = Pyramid(images.right, options_);
-  if (!pyramid_.empty()) FollowInTime(left);
+  const Pyramid left = BuildPyramid(images.left, options_);
+  const Pyramid right = BuildPyramid(images.right, options_);
+  if (!pyramid_.empty()) {
+    FollowInTime(left);
+    HoldAgainstReferences(left);
+    ++frame_;
+  }
   pyramid_ = left;
   Detect(images.left);
-  return MatchStereo(images.stamp, right);
+  StereoFeatures features = MatchStereo(images.stamp, right);
+  RenewReferences();
+  return features;
 }
 
 std::vector<cv::Point2f> StereoTracker::points_px() const {
@@ -75,7 +84,7 @@ std::vector<cv::Point2f> StereoTracker::points_px() const {
   return points;
 }
 
-void StereoTracker::FollowInTime(const std::vector<cv::Mat>& pyramid) {
+void StereoTracker::FollowInTime(const Pyramid& pyramid) {
   std::vector<cv::Point2f> from;
   std::vector<cv::Point2f> to;
   for (const Tracked& t : tracked_) {
@@ -89,10 +98,57 @@ void StereoTracker::FollowInTime(const std::vector<cv::Mat>& pyramid) {
     Tracked t = tracked_[i];
     t.flow = to[i] - from[i];
     t.raw = to[i];
-    t.has_flow = true;
     kept.push_back(t);
   }
   tracked_ = std::move(kept);
+}
+
+// A track that is followed from frame to frame wanders off its point a little each time. Held
+// against the picture where it began it does not, as long as it still looks the same.
+void StereoTracker::HoldAgainstReferences(const Pyramid& pyramid) {
+  std::map<std::uint64_t, std::vector<Tracked*>> by_reference;
+  for (Tracked& t : tracked_) {
+    if (t.reference != kNoReference) by_reference[t.reference].push_back(&t);
+  }
+  const auto limit = static_cast<float>(options_.reference_px);
+  for (const auto& [reference, tracks] : by_reference) {
+    std::vector<cv::Point2f> from;
+    std::vector<cv::Point2f> to;
+    for (const Tracked* t : tracks) {
+      from.push_back(t->reference_raw);
+      to.push_back(t->raw);
+    }
+    std::vector<std::uint8_t> status;
+    cv::calcOpticalFlowPyrLK(references_.at(reference), pyramid, from, to, status, cv::noArray(),
+                             {options_.window_px, options_.window_px}, 0, kUntil,
+                             cv::OPTFLOW_USE_INITIAL_FLOW);
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const cv::Point2f d = to[i] - tracks[i]->raw;
+      if (status[i] != 0 && d.dot(d) < limit * limit) {
+        tracks[i]->raw = to[i];
+      } else {
+        tracks[i]->reference = kNoReference;
+      }
+    }
+  }
+}
+
+// Begins anew where a reference is missing or shows the point from too near or too far.
+void StereoTracker::RenewReferences() {
+  references_[frame_] = pyramid_;
+  std::set<std::uint64_t> needed;
+  for (Tracked& t : tracked_) {
+    // Both far: a pixel of disparity more or less is no change of scale worth speaking of.
+    const float change = (t.disparity + 1.0F) / (t.reference_disparity + 1.0F);
+    const auto bound = static_cast<float>(options_.reference_scale);
+    if (t.reference == kNoReference || change > bound || change < 1.0F / bound) {
+      t.reference = frame_;
+      t.reference_raw = t.raw;
+      t.reference_disparity = t.disparity;
+    }
+    needed.insert(t.reference);
+  }
+  std::erase_if(references_, [&](const auto& entry) { return !needed.contains(entry.first); });
 }
 
 // Fills the grid's empty places with the strongest corners, cell by cell.
@@ -124,10 +180,11 @@ void StereoTracker::Detect(const cv::Mat& left) {
     ++count;
     fresh.push_back(corner);
   }
-  for (const cv::Point2f& p : fresh) tracked_.push_back({.id = next_id_++, .raw = p});
+  for (const cv::Point2f& p : fresh)
+    tracked_.push_back({.id = next_id_++, .raw = p, .reference = kNoReference});
 }
 
-StereoFeatures StereoTracker::MatchStereo(TimeNs stamp, const std::vector<cv::Mat>& right) {
+StereoFeatures StereoTracker::MatchStereo(TimeNs stamp, const Pyramid& right) {
   std::vector<cv::Point2f> in_left;
   std::vector<cv::Point2f> in_right;
   for (const Tracked& t : tracked_) {

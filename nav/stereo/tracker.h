@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -29,19 +30,28 @@ class StereoTracker {
  private:
   struct Tracked {
     std::uint64_t id = 0;
-    cv::Point2f raw;         // in the current left image
-    cv::Point2f flow;        // raw displacement since the previous image
-    float disparity = 8.0F;  // raw u_left - u_right, a first guess where none was matched
-    bool has_flow = false;
+    cv::Point2f raw;               // in the current left image
+    cv::Point2f flow{0.0F, 0.0F};  // raw displacement since the previous image
+    float disparity = 8.0F;        // raw u_left - u_right, a first guess where none was matched
+    // The picture that the point is held against, so that errors do not add up frame by frame.
+    std::uint64_t reference = 0;  // frame number
+    cv::Point2f reference_raw;    // where it is there
+    float reference_disparity = 0.0F;
   };
 
-  void FollowInTime(const std::vector<cv::Mat>& pyramid);
+  using Pyramid = std::vector<cv::Mat>;
+
+  void FollowInTime(const Pyramid& pyramid);
+  void HoldAgainstReferences(const Pyramid& pyramid);
+  void RenewReferences();
   void Detect(const cv::Mat& left);
-  [[nodiscard]] StereoFeatures MatchStereo(TimeNs stamp, const std::vector<cv::Mat>& right);
+  [[nodiscard]] StereoFeatures MatchStereo(TimeNs stamp, const Pyramid& right);
 
   TrackerOptions options_;
   StereoRectifier rectifier_;
-  std::vector<cv::Mat> pyramid_;  // of the newest left image
+  std::uint64_t frame_ = 0;                      // number of the newest one
+  Pyramid pyramid_;                              // of its left image
+  std::map<std::uint64_t, Pyramid> references_;  // left images by frame number
   std::vector<Tracked> tracked_;
   std::uint64_t next_id_ = 0;
 };

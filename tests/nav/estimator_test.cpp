@@ -78,7 +78,8 @@ TEST(StereoEstimator, PointsThatMoveTogetherAreLeftOut) {
 
 TEST(StereoEstimator, AStandingStartIsLevelledByTheAccelerometer) {
   Drive drive;
-  const Eigen::Quaterniond tilt = Eigen::Quaterniond(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()));
+  const Eigen::Quaterniond tilt =
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()));
   const Pose truth{LevelAttitude(0.0) * tilt, Eigen::Vector3d::Zero()};
   drive.start.level_sigma_rad = DegToRad(3.0);
   StereoEstimator estimator(StereoOptions{}, TestCalibration(), drive.start, std::nullopt);

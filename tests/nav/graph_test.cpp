@@ -19,7 +19,8 @@ TEST(HeadingEdge, JacobianAgreesWithFiniteDifferences) {
   for (int k = 0; k < 6; ++k) {
     const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
     const double difference = (EvaluateHeading(edge, Perturb(pose, d)).residual -
-                               EvaluateHeading(edge, Perturb(pose, -d)).residual) / (2.0 * kStep);
+                               EvaluateHeading(edge, Perturb(pose, -d)).residual) /
+                              (2.0 * kStep);
     EXPECT_NEAR(difference, e.by_pose(k), 1e-6) << k;
   }
 }

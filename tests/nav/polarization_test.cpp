@@ -39,9 +39,7 @@ TEST(SixChannel, ADeadChannelShowsInThePairSum) {
   EXPECT_GT(std::abs(light->pair_sum), 0.3);
 }
 
-TEST(SixChannel, DarknessIsNoAnswer) {
-  EXPECT_FALSE(DecodeSixChannels(Channels(0.0, 0.5, 0.2)));
-}
+TEST(SixChannel, DarknessIsNoAnswer) { EXPECT_FALSE(DecodeSixChannels(Channels(0.0, 0.5, 0.2))); }
 
 Eigen::Vector3d Sun(double azimuth, double elevation) {
   return {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),

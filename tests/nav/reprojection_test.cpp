@@ -31,12 +31,12 @@ TEST_F(ReprojectionTest, JacobiansAgreeWithFiniteDifferences) {
   ASSERT_TRUE(e);
   for (int k = 0; k < 6; ++k) {
     const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
-    const Eigen::Vector3d by_host =
-        (Residual(Perturb(host_, d), target_, landmark_) -
-         Residual(Perturb(host_, -d), target_, landmark_)) / (2.0 * kStep);
-    const Eigen::Vector3d by_target =
-        (Residual(host_, Perturb(target_, d), landmark_) -
-         Residual(host_, Perturb(target_, -d), landmark_)) / (2.0 * kStep);
+    const Eigen::Vector3d by_host = (Residual(Perturb(host_, d), target_, landmark_) -
+                                     Residual(Perturb(host_, -d), target_, landmark_)) /
+                                    (2.0 * kStep);
+    const Eigen::Vector3d by_target = (Residual(host_, Perturb(target_, d), landmark_) -
+                                       Residual(host_, Perturb(target_, -d), landmark_)) /
+                                      (2.0 * kStep);
     EXPECT_LT((by_host - e->by_host.col(k)).norm(), kDifferenceTolerance) << k;
     EXPECT_LT((by_target - e->by_target.col(k)).norm(), kDifferenceTolerance) << k;
   }
@@ -54,9 +54,9 @@ TEST_F(ReprojectionTest, MovingHostAndTargetTogetherChangesNothing) {
   // A common translation; a common turn about W's origin moves both positions too.
   const Eigen::Matrix3d shift = e->by_host.leftCols<3>() + e->by_target.leftCols<3>();
   EXPECT_LT(shift.norm(), 1e-9);
-  const Eigen::Matrix3d turn = e->by_host.rightCols<3>() - e->by_host.leftCols<3>() * Skew(host_.p) +
-                               e->by_target.rightCols<3>() -
-                               e->by_target.leftCols<3>() * Skew(target_.p);
+  const Eigen::Matrix3d turn =
+      e->by_host.rightCols<3>() - e->by_host.leftCols<3>() * Skew(host_.p) +
+      e->by_target.rightCols<3>() - e->by_target.leftCols<3>() * Skew(target_.p);
   EXPECT_LT(turn.norm(), 1e-9);
 }
 
@@ -70,8 +70,8 @@ TEST_F(ReprojectionTest, DisparityIsBaselineTimesFocalLengthOverDepth) {
 TEST_F(ReprojectionTest, APointAtInfinityIsSeenAndOneBehindIsNot) {
   landmark_.z() = 0.0;
   EXPECT_TRUE(Reproject(camera_, host_, target_, landmark_, seen_, sigmas_));
-  const Pose turned{target_.q * Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())),
-                    target_.p};
+  const Pose turned{
+      target_.q * Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), target_.p};
   EXPECT_FALSE(Reproject(camera_, host_, turned, landmark_, seen_, sigmas_));
 }
 

@@ -13,8 +13,8 @@ namespace {
 // A small camera and a bare plaza, so that a few frames are quick.
 SimulatorOptions SmallOptions() {
   SimulatorOptions options;
-  options.world.plaza = {.tree_count = 3, .lamp_count = 3, .parked_car_count = 2,
-                         .furniture_count = 3};
+  options.world.plaza = {
+      .tree_count = 3, .lamp_count = 3, .parked_car_count = 2, .furniture_count = 3};
   options.sensors.stereo = StereoCameraOptions{.width_px = 160, .height_px = 96, .focal_px = 90.0};
   options.sensors.imu = ImuOptions{};
   options.sensors.polarimeter = PolarimeterOptions{};
@@ -38,7 +38,8 @@ struct Recorder {
   void operator()(const nav::StereoImages& m) const {
     for (const cv::Mat& image : {m.left, m.right}) {
       for (int row = 0; row < image.rows; ++row) {
-        record["stereo"].insert(record["stereo"].end(), image.ptr(row), image.ptr(row) + image.cols);
+        record["stereo"].insert(record["stereo"].end(), image.ptr(row),
+                                image.ptr(row) + image.cols);
       }
     }
   }

@@ -40,8 +40,7 @@ nav::StartPrior GrantStart(const StartOptions& start, const sim::Truth& truth,
   nav::StartPrior prior{.position_sigma_m = start.position_sigma_m,
                         .heading_sigma_rad = nav::DegToRad(start.heading_sigma_deg),
                         .level_sigma_rad = nav::DegToRad(start.level_sigma_deg)};
-  prior.heading_rad =
-      nav::CompassHeading(truth.T_WB.q) + prior.heading_sigma_rad * draw.Gaussian();
+  prior.heading_rad = nav::CompassHeading(truth.T_WB.q) + prior.heading_sigma_rad * draw.Gaussian();
   for (int i = 0; i < 3; ++i) {
     prior.p_WB_m(i) = truth.T_WB.p(i) + prior.position_sigma_m * draw.Gaussian();
   }

@@ -31,8 +31,8 @@ std::vector<HeadingReading> PolarizationReadings::ErrorsAgainst(
     const double share =
         nav::ToSeconds(reading.stamp - a.stamp) / nav::ToSeconds(b.stamp - a.stamp);
     const double heading = nav::CompassHeading(a.T_WB.q.slerp(share, b.T_WB.q));
-    const auto read = nav::HeadingFromEVector(reading.e_B, nav::LevelAttitude(heading),
-                                              sun_(reading.stamp));
+    const auto read =
+        nav::HeadingFromEVector(reading.e_B, nav::LevelAttitude(heading), sun_(reading.stamp));
     if (read) errors.push_back({nav::ToSeconds(reading.stamp), nav::WrapPi(*read - heading)});
   }
   return errors;

@@ -5,7 +5,9 @@
 namespace polnav::testbed {
 namespace {
 
-void HashVector(const Eigen::Vector3d& v, Sha256& hash) { hash.Update(v.data(), sizeof(double) * 3); }
+void HashVector(const Eigen::Vector3d& v, Sha256& hash) {
+  hash.Update(v.data(), sizeof(double) * 3);
+}
 
 void HashPose(const nav::Pose& pose, Sha256& hash) {
   HashVector(pose.p, hash);
