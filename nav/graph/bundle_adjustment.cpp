@@ -10,7 +10,9 @@
 namespace polnav::nav {
 namespace {
 
-// Owns what Ceres works on and writes the solution back.
+// Owns what Ceres works on and writes the solution back. Ceres eliminates the blocks of a group in
+// the order of their addresses: each kind lives in one array, in the window's order, or the sums
+// would depend on where the heap put things.
 class Problem {
  public:
   Problem(const RectifiedCamera& camera, const BundleAdjustmentOptions& options, Window& window)
@@ -43,6 +45,7 @@ class Problem {
  private:
   void AddKeyframes() {
     ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
+    poses_.reserve(window_.keyframes.size());
     for (const Keyframe& k : window_.keyframes) poses_.push_back(ToBlock(k.T_WB));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       problem_->AddParameterBlock(poses_[i].data(), 7, &manifold_);
@@ -61,8 +64,10 @@ class Problem {
   }
 
   void AddLandmarks() {
-    for (auto& [id, landmark] : window_.landmarks) {
-      double* coordinates = landmark.coordinates.data();
+    coordinates_.reserve(window_.landmarks.size());
+    for (const auto& [id, landmark] : window_.landmarks) {
+      coordinates_.push_back(landmark.coordinates);
+      double* coordinates = coordinates_.back().data();
       problem_->AddParameterBlock(coordinates, 3);
       ordering_->AddElementToGroup(coordinates, 0);
       const std::size_t host = IndexOf(window_, landmark.host);
@@ -83,6 +88,8 @@ class Problem {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       window_.keyframes[i].T_WB = ToPose(poses_[i].data());
     }
+    std::size_t next = 0;
+    for (auto& [id, landmark] : window_.landmarks) landmark.coordinates = coordinates_[next++];
   }
 
   const RectifiedCamera& camera_;
@@ -90,7 +97,8 @@ class Problem {
   Window& window_;
   ceres::HuberLoss huber_;
   PoseManifold manifold_;
-  std::deque<PoseBlock> poses_;  // addresses stay while it grows
+  std::vector<PoseBlock> poses_;
+  std::vector<Eigen::Vector3d> coordinates_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
   std::unique_ptr<ceres::Problem> problem_;
 };

@@ -13,7 +13,8 @@ struct TrackerOptions {
   int grid_rows = 9;
   int min_distance_px = 10;      // between features
   double corner_quality = 0.01;  // of a cell's corner over the image's best [-]
-  // Sigma of a blur before tracking; 0: none. Takes noise and aliasing from the patches, and detail.
+  // Sigma of a blur before tracking; 0: none. Takes noise and aliasing from the patches, and
+  // detail.
   double smoothing_px = 1.0;
   // Lucas-Kanade patch side. A large one bears blur, but the ground expands across it as it comes
   // nearer, and the mean motion of the patch is not that of its centre: a drift in pitch and yaw.
@@ -47,10 +48,12 @@ struct TrackerOptions {
 
 struct StereoOptions {
   TrackerOptions tracker;
-  double pixel_sigma_px = 0.35;  // of a tracked position; larger trusts vision less
-  double disparity_sigma_px = 0.30;
+  // Twice what tracking scatters by: its errors are alike from frame to frame and from point to
+  // point, and a larger sigma is how the window knows. Larger trusts vision less.
+  double pixel_sigma_px = 0.7;
+  double disparity_sigma_px = 0.6;
   double flow_threshold_px = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
-  double inlier_sigmas = 3.0;      // departure from the solved pose that makes an outlier
+  double inlier_sigmas = 2.0;      // departure from the solved pose that makes an outlier
   int min_inliers = 12;            // fewer: the frame is not tracked, the estimate coasts
   int window_keyframes = 8;        // longer: less drift, slower (cost grows with its square)
   double keyframe_distance_m = 1.4;

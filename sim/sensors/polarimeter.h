@@ -9,7 +9,7 @@
 // "better than 2 degrees outdoors".
 //   noise and quantization       0.7    white
 //   gains, polarizer angles      0.4    fixed; turn with the heading as 2 psi and 4 psi
-//   mounting, mostly its yaw     0.3    fixed
+//   mounting, mostly its yaw     0.15   fixed
 //   thin cloud                   0.5    correlated over some 50 s
 //   tilt (tan(elevation) of it)  0.5    as the car moves
 //   all                          1.2
@@ -38,7 +38,7 @@ struct PolarimeterOptions {
   int bits = 12;                           // of the converter
   double gain_sigma = 0.015;               // spread of the channels' gains after calibration [-]
   double polarizer_angle_sigma_deg = 0.3;  // spread of the six polarizers' angles
-  double mount_error_sigma_deg = 0.3;      // true mounting about the nominal one, each axis
+  double mount_error_sigma_deg = 0.15;     // true mounting about the nominal one, each axis
 
   template <typename Visitor>
   void Visit(Visitor& v) {

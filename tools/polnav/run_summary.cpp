@@ -84,6 +84,13 @@ std::string RunSummary(const Scenario& scenario, const Json& result,
                        const std::vector<CriterionResult>& criteria) {
   std::string text = fmt::format("{}, seed {}\n\n", scenario.name, scenario.seed);
   if (!result["estimators"].empty()) text += ErrorTables(scenario, result);
+  if (result.contains("polarization_reading_deg")) {
+    text += fmt::format(
+        "single polarization readings, heading error [deg]: RMSE {}, mean {}, std {}\n\n",
+        Number(result, "polarization_reading_deg.rmse", 3),
+        Number(result, "polarization_reading_deg.mean", 3),
+        Number(result, "polarization_reading_deg.std", 3));
+  }
   if (!criteria.empty()) {
     text += "criteria\n";
     for (const CriterionResult& c : criteria) text += CriterionLine(c);

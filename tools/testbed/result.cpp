@@ -140,6 +140,13 @@ Json BuildResult(const Scenario& scenario, const RunRecord& record, std::uint64_
     result["streams"][name] = {{"count", stream.count}, {"sha256", stream.sha256}};
   }
   result["timing_ms"] = TimingJson(record.timing);
+  if (!record.polarization_readings.empty()) {
+    std::vector<double> errors_deg;
+    for (const HeadingReading& r : record.polarization_readings) {
+      errors_deg.push_back(nav::RadToDeg(r.error_rad));
+    }
+    result["polarization_reading_deg"] = ToJson(Summarize(errors_deg));
+  }
   result["estimators"] = Json::object();
   const Trajectory truth = TrajectoryOf(record.truth);
   for (const EstimatorRun& run : record.estimators) {

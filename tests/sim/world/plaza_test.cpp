@@ -20,6 +20,11 @@ using Eigen::Vector3d;
 
 class PlazaTest : public testing::Test {
  protected:
+  // Building takes a second: the suite runs in one process (CMakeLists.txt) and shares this one.
+  [[nodiscard]] const Scene& Shared() const {
+    static const Scene scene = Build(5);
+    return scene;
+  }
   [[nodiscard]] Scene Build(std::uint64_t seed, const PlazaOptions& options = {}) const {
     return BuildPlaza(options, track, terrain, seed);
   }
@@ -54,15 +59,14 @@ bool Same(const Scene& a, const Scene& b) {
 }
 
 TEST_F(PlazaTest, IsFixedByItsSeed) {
-  const Scene scene = Build(5);
-  EXPECT_TRUE(Same(scene, Build(5)));
-  EXPECT_FALSE(Same(scene, Build(6)));
+  EXPECT_TRUE(Same(Shared(), Build(5)));
+  EXPECT_FALSE(Same(Shared(), Build(6)));
 }
 
 // The zenith over the road must be sky: nothing but ground there, up to the kerbs.
 TEST_F(PlazaTest, HasNothingStandingOnOrReachingOverTheRoad) {
   std::size_t triangles = 0;
-  for (const Mesh& mesh : Build(5).meshes) {
+  for (const Mesh& mesh : Shared().meshes) {
     triangles += mesh.indices.size() / 3;
     ASSERT_LT(*std::max_element(mesh.indices.begin(), mesh.indices.end()), mesh.vertices.size());
     for (const Vertex& v : mesh.vertices) {
@@ -78,7 +82,7 @@ TEST_F(PlazaTest, HasNothingStandingOnOrReachingOverTheRoad) {
 // Corners in every part of the picture that is not sky, and greys in the middle of the range.
 TEST_F(PlazaTest, OffersCornersEverywhereAndSaneBrightness) {
   const StereoCameraOptions options;
-  StereoCamera camera(Build(5), sky, NominalStereo(options), options, 1, 1);
+  StereoCamera camera(Shared(), sky, NominalStereo(options), options, 1, 1);
   for (const double s : {0.0, 120.0, 250.0}) {
     const cv::Mat image = camera.Capture(Body(s, 0.0), 0, 0).left;
     std::vector<cv::Point2f> corners;
@@ -103,7 +107,7 @@ TEST_F(PlazaTest, OffersCornersEverywhereAndSaneBrightness) {
 TEST_F(PlazaTest, TracksFromFrameToFrameWithinAFifthOfAPixel) {
   const StereoCameraOptions options;
   const nav::StereoCalibration truth = NominalStereo(options);
-  StereoCamera camera(Build(5), sky, truth, options, 1, 1);
+  StereoCamera camera(Shared(), sky, truth, options, 1, 1);
   const nav::Pose T_WC1 = Body(60.0, 0.0) * truth.left.T_BC;
   const nav::Pose T_WC2 = Body(60.6, 0.0) * truth.left.T_BC;
   const cv::Mat before = camera.Capture(Body(60.0, 0.0), 0, 0).left;
