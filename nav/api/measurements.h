@@ -43,6 +43,8 @@ struct FeatureObservation {
 struct StereoFeatures {
   TimeNs stamp = 0;
   std::vector<FeatureObservation> features;
+  // CV_8UC1, one row a feature, compared by Hamming distance, to know a place again; may be empty.
+  cv::Mat descriptors;
 };
 
 // Six intensities behind polarizers at 0, 90, 60, 150, 120, 210 degrees: three opponent pairs

@@ -27,6 +27,14 @@ struct LevelResidual {
 // right, blind to heading.
 [[nodiscard]] LevelResidual EvaluateLevel(const LevelEdge& edge, const Pose& T_WB);
 
+struct PlaceResidual {
+  Eigen::Matrix<double, 6, 1> residual;
+  Matrix6d by_pose;
+};
+
+// Departure from the pose that a known place gives.
+[[nodiscard]] PlaceResidual EvaluatePlace(const PoseEdge& edge, const Pose& T_WB);
+
 // Jacobian of Log(Exp(dtheta) q q0^-1) by dtheta at zero, for theta = Log(q q0^-1).
 [[nodiscard]] Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta);
 

@@ -48,10 +48,14 @@ void AddPrior(const Window& window, NormalEquations& n) {
   n.g.head(size) += J.transpose() * r;
 }
 
-void AddAttitudeEdges(const Keyframe& keyframe, std::size_t pose, NormalEquations& n) {
+void AddPoseEdges(const Keyframe& keyframe, std::size_t pose, NormalEquations& n) {
   if (keyframe.heading) {
     const HeadingResidual e = EvaluateHeading(*keyframe.heading, keyframe.T_WB);
     n.AddToPose(pose, e.by_pose, Eigen::Matrix<double, 1, 1>(e.residual));
+  }
+  if (keyframe.place) {
+    const PlaceResidual e = EvaluatePlace(*keyframe.place, keyframe.T_WB);
+    n.AddToPose(pose, e.by_pose, e.residual);
   }
   if (keyframe.level) {
     const LevelResidual e = EvaluateLevel(*keyframe.level, keyframe.T_WB);
@@ -143,7 +147,7 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
                        Window& window) {
   NormalEquations n(window.keyframes.size());
   AddPrior(window, n);
-  AddAttitudeEdges(window.keyframes.front(), 0, n);
+  AddPoseEdges(window.keyframes.front(), 0, n);
   const std::uint64_t oldest = window.keyframes.front().id;
   for (auto it = window.landmarks.begin(); it != window.landmarks.end();) {
     const bool leaves = it->second.host == oldest;
@@ -159,7 +163,7 @@ Matrix6d NewestCovariance(const RectifiedCamera& camera, const BundleAdjustmentO
   NormalEquations n(window.keyframes.size());
   AddPrior(window, n);
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
-    AddAttitudeEdges(window.keyframes[i], i, n);
+    AddPoseEdges(window.keyframes[i], i, n);
   }
   for (const auto& [id, landmark] : window.landmarks) {
     AddLandmark(camera, options, window, landmark, n);

@@ -8,6 +8,12 @@
 #include "nav/polarization/sky_heading.h"
 
 namespace polnav::nav {
+namespace {
+
+// The first edge carries the slow part's whole information: worth a second of readings.
+constexpr int kFirstReadings = 20;
+
+}  // namespace
 
 HeadingFusion::HeadingFusion(const PolarizationOptions& options,
                              const PolarimeterCalibration& calibration, SunModel sun)
@@ -50,8 +56,14 @@ void HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeN
   std::erase_if(waiting_, [&](const Reading& r) { return !later(r); });
 }
 
+void HeadingFusion::Forget() {
+  innovation_sum_rad_ = 0.0;
+  innovations_ = 0;
+}
+
 std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB) {
-  if (innovations_ == 0) return std::nullopt;
+  const bool first = !last_edge_;
+  if (innovations_ < (first ? kFirstReadings : 1)) return std::nullopt;
   const double n = innovations_;
   const double mean = innovation_sum_rad_ / n;
   const double white = DegToRad(options_.reading_sigma_deg);
@@ -60,8 +72,7 @@ std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Qu
   const double slow_share =
       last_edge_ ? std::max(1.0, 2.0 * options_.correlation_time_s / ToSeconds(stamp - *last_edge_))
                  : 1.0;
-  innovation_sum_rad_ = 0.0;
-  innovations_ = 0;
+  Forget();
   last_edge_ = stamp;
   return HeadingEdge{.heading_rad = WrapPi(CompassHeading(q_WB) + mean),
                      .sigma_rad = std::sqrt(white * white / n + slow * slow * slow_share)};

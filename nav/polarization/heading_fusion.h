@@ -39,6 +39,9 @@ class HeadingFusion {
   // The heading of the keyframe at `stamp`, whose vision attitude is q_WB; empties the average.
   [[nodiscard]] std::optional<HeadingEdge> TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB);
 
+  // Forgets the average so far: the attitudes that it was made with have turned out wrong.
+  void Forget();
+
   [[nodiscard]] int used() const { return used_; }
   [[nodiscard]] int gated() const { return gated_; }
 

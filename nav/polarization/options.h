@@ -4,12 +4,12 @@
 namespace polnav::nav {
 
 struct PolarizationOptions {
-  double reading_sigma_deg = 0.8;     // white part of one reading's heading error
-  double correlated_sigma_deg = 0.5;  // slow part: sky, tilt left over, instrument
-  double correlation_time_s = 5.0;    // of the slow part; averaging within it gains nothing
-  double min_dop = 0.10;              // below, a reading is unusable
-  double max_pair_sum = 0.12;         // |p1 + p2 + p3|: zero for a healthy sensor
-  double gate_sigmas = 4.0;           // innovations beyond are left out
+  double reading_sigma_deg = 1.0;      // white part of one reading's heading error
+  double correlated_sigma_deg = 0.35;  // slow part: sky, tilt left over, instrument
+  double correlation_time_s = 15.0;    // of the slow part; averaging within it gains nothing
+  double min_dop = 0.10;               // below, a reading is unusable
+  double max_pair_sum = 0.12;          // |p1 + p2 + p3|: zero for a healthy sensor
+  double gate_sigmas = 4.0;            // innovations beyond are left out
 
   template <typename Visitor>
   void Visit(Visitor& v) {

@@ -22,12 +22,6 @@ Matrix6d StartCovariance(const StartPrior& start) {
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
-StereoPixel PixelOf(const FeatureObservation& f) {
-  StereoPixel pixel{.uv_px = f.uv_left_px};
-  if (f.u_right_px) pixel.disparity_px = f.uv_left_px.x() - *f.u_right_px;
-  return pixel;
-}
-
 }  // namespace
 
 StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
@@ -40,6 +34,7 @@ StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalib
       solver_{.sigmas = adjustment_.sigmas, .inlier_sigmas = options.inlier_sigmas},
       polarization_(std::move(polarization)),
       levelling_(options.levelling),
+      places_(options.places),
       T_WB_{LevelAttitude(start.heading_rad), start.p_WB_m},
       covariance_(StartCovariance(start)) {}
 
@@ -84,6 +79,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   } else if (NeedsKeyframe(report.inliers)) {
     AddKeyframe(features, views);
     OptimizeWindow();
+    places_.Remember(camera_, stamp_, T_WB_, features);
     report.keyframes = 1;
   }
   ForgetRejected(features);
@@ -160,7 +156,10 @@ bool StereoEstimator::NeedsKeyframe(int inliers) const {
 void StereoEstimator::AddKeyframe(const StereoFeatures& features,
                                   const std::vector<LandmarkView>& seen) {
   Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_};
+  const bool first_levelling = levelling_.FirstIsDue();
   keyframe.level = levelling_.TakeEdge();
+  if (first_levelling && polarization_) polarization_->Forget();  // taken with a guessed tilt
+  keyframe.place = places_.Recognize(camera_, stamp_, T_WB_, features, solver_);
   if (polarization_) keyframe.heading = polarization_->TakeEdge(stamp_, T_WB_.q);
   window_.keyframes.push_back(keyframe);
   std::set<std::uint64_t> trusted;

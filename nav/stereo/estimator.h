@@ -19,6 +19,7 @@
 #include "nav/api/estimate.h"
 #include "nav/api/measurements.h"
 #include "nav/graph/bundle_adjustment.h"
+#include "nav/graph/place_memory.h"
 #include "nav/graph/window.h"
 #include "nav/polarization/heading_fusion.h"
 #include "nav/stereo/levelling.h"
@@ -56,6 +57,7 @@ class StereoEstimator {
   PoseSolverOptions solver_;
   std::optional<HeadingFusion> polarization_;
   Levelling levelling_;
+  PlaceMemory places_;
 
   Window window_;
   Matrix6d keyframe_covariance_ = Matrix6d::Zero();

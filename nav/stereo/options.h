@@ -1,6 +1,7 @@
 // How does the stereo estimator behave? YAML keys = field names.
 #pragma once
 
+#include "nav/graph/place_memory.h"
 #include "nav/stereo/levelling.h"
 
 namespace polnav::nav {
@@ -61,6 +62,7 @@ struct StereoOptions {
   double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
   int max_iterations = 6;         // of the bundle adjustment, a keyframe
   LevellingOptions levelling;     // only with an IMU in the rig
+  PlaceOptions places;            // what was seen on the first lap holds the later ones
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -76,6 +78,7 @@ struct StereoOptions {
     v("keyframe_overlap", keyframe_overlap, {.min = 0.0, .max = 1.0});
     v("max_iterations", max_iterations, {.min = 1, .max = 100});
     v("levelling", levelling);
+    v("places", places);
   }
 };
 

@@ -36,6 +36,12 @@ Transfer TransferLandmark(const RectifiedCamera& camera, const Pose& T_WBh, cons
 
 }  // namespace
 
+StereoPixel PixelOf(const FeatureObservation& feature) {
+  StereoPixel pixel{.uv_px = feature.uv_left_px};
+  if (feature.u_right_px) pixel.disparity_px = feature.uv_left_px.x() - *feature.u_right_px;
+  return pixel;
+}
+
 std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Pose& T_WBh,
                                       const Pose& T_WBj, const Eigen::Vector3d& landmark,
                                       const StereoPixel& seen, const PixelSigmas& sigmas) {

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "nav/api/geometry.h"
+#include "nav/api/measurements.h"
 #include "nav/stereo/rectifier.h"
 
 namespace polnav::nav {
@@ -20,6 +21,8 @@ struct StereoPixel {
   Eigen::Vector2d uv_px = Eigen::Vector2d::Zero();
   std::optional<double> disparity_px;  // u_left - u_right; absent: only the left camera saw it
 };
+
+[[nodiscard]] StereoPixel PixelOf(const FeatureObservation& feature);
 
 struct PixelSigmas {
   double position_px = 0.35;

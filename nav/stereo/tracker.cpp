@@ -1,6 +1,7 @@
 #include "nav/stereo/tracker.h"
 
 #include <algorithm>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <set>
@@ -74,6 +75,7 @@ StereoFeatures StereoTracker::Track(const StereoImages& images) {
   pyramid_ = left;
   Detect(images.left);
   StereoFeatures features = MatchStereo(images.stamp, right);
+  features.descriptors = Describe(images.left);
   RenewReferences();
   return features;
 }
@@ -131,6 +133,22 @@ void StereoTracker::HoldAgainstReferences(const Pyramid& pyramid) {
       }
     }
   }
+}
+
+// ORB's binary descriptors [Rublee2011], upright, of the newest points: one row each, zeros where a
+// point is too near the border.
+cv::Mat StereoTracker::Describe(const cv::Mat& left) const {
+  std::vector<cv::KeyPoint> points;
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    points.emplace_back(tracked_[i].raw, 31.0F, 0.0F, 0.0F, 0, static_cast<int>(i));
+  }
+  cv::Mat described;
+  cv::ORB::create(static_cast<int>(points.size()) + 1, 1.2F, 1)->compute(left, points, described);
+  cv::Mat rows = cv::Mat::zeros(static_cast<int>(tracked_.size()), 32, CV_8UC1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    described.row(static_cast<int>(i)).copyTo(rows.row(points[i].class_id));
+  }
+  return rows;
 }
 
 // Begins anew where a reference is missing or shows the point from too near or too far.

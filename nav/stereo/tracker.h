@@ -44,6 +44,7 @@ class StereoTracker {
   void FollowInTime(const Pyramid& pyramid);
   void HoldAgainstReferences(const Pyramid& pyramid);
   void RenewReferences();
+  [[nodiscard]] cv::Mat Describe(const cv::Mat& left) const;
   void Detect(const cv::Mat& left);
   [[nodiscard]] StereoFeatures MatchStereo(TimeNs stamp, const Pyramid& right);
 

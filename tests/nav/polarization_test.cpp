@@ -91,17 +91,17 @@ TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
   const Eigen::Quaterniond truth = LevelAttitude(0.7);
   const Eigen::Quaterniond believed = LevelAttitude(0.71);
   const Eigen::Vector3d e = ZenithEVector(truth, sun);
-  for (int i = 1; i <= 4; ++i) {
+  for (int i = 1; i <= 20; ++i) {
     PolarizationSample sample = Channels(0.3, 0.5, std::atan2(e.y(), e.x()));
     sample.stamp = i * kNsPerSecond / 20;
     EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
   }
-  fusion.Advance(0, believed, kNsPerSecond / 5, believed, 0.01);
-  const auto edge = fusion.TakeEdge(kNsPerSecond / 5, believed);
+  fusion.Advance(0, believed, kNsPerSecond, believed, 0.01);
+  const auto edge = fusion.TakeEdge(kNsPerSecond, believed);
   ASSERT_TRUE(edge);
   EXPECT_NEAR(edge->heading_rad, 0.7, 1e-9);
-  EXPECT_NEAR(edge->sigma_rad, DegToRad(1.0) / 2.0, 1e-12);
-  EXPECT_FALSE(fusion.TakeEdge(kNsPerSecond / 5, believed)) << "no reading is used twice";
+  EXPECT_NEAR(edge->sigma_rad, DegToRad(1.0) / std::sqrt(20.0), 1e-12);
+  EXPECT_FALSE(fusion.TakeEdge(kNsPerSecond, believed)) << "no reading is used twice";
 }
 
 TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
