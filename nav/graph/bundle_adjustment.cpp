@@ -54,7 +54,6 @@ class Problem {
       if (k.heading) {
         problem_->AddResidualBlock(new HeadingCost(*k.heading), nullptr, poses_[i].data());
       }
-      if (k.place) problem_->AddResidualBlock(new PlaceCost(*k.place), nullptr, poses_[i].data());
       if (k.level) problem_->AddResidualBlock(new LevelCost(*k.level), nullptr, poses_[i].data());
     }
     std::vector<double*> first;

@@ -148,20 +148,6 @@ class LevelCost final : public ceres::SizedCostFunction<2, 7> {
   LevelEdge edge_;
 };
 
-class PlaceCost final : public ceres::SizedCostFunction<6, 7> {
- public:
-  explicit PlaceCost(const PoseEdge& edge) : edge_(edge) {}
-  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    const PlaceResidual r = EvaluatePlace(edge_, ToPose(x[0]));
-    PutResidual<6>(r.residual, residuals);
-    if (jacobians != nullptr) PutPoseJacobian<6>(r.by_pose, jacobians[0]);
-    return true;
-  }
-
- private:
-  PoseEdge edge_;
-};
-
 class PriorCost final : public ceres::CostFunction {
  public:
   explicit PriorCost(const Prior& prior) : prior_(prior) {

@@ -35,19 +35,6 @@ LevelResidual EvaluateLevel(const LevelEdge& edge, const Pose& T_WB) {
   return r;
 }
 
-PlaceResidual EvaluatePlace(const PoseEdge& edge, const Pose& T_WB) {
-  PlaceResidual r;
-  r.residual = Difference(T_WB, edge.T_WB);
-  r.by_pose.setIdentity();
-  r.by_pose.bottomRightCorner<3, 3>() = InverseLeftJacobian(r.residual.tail<3>());
-  Eigen::Matrix<double, 6, 1> weights;
-  weights << Eigen::Vector3d::Constant(1.0 / edge.position_sigma_m),
-      Eigen::Vector3d::Constant(1.0 / edge.angle_sigma_rad);
-  r.residual = weights.asDiagonal() * r.residual;
-  r.by_pose = weights.asDiagonal() * r.by_pose;
-  return r;
-}
-
 Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta) {
   const double angle = theta.norm();
   const Eigen::Matrix3d s = Skew(theta);

@@ -27,16 +27,13 @@ struct LevelResidual {
 // right, blind to heading.
 [[nodiscard]] LevelResidual EvaluateLevel(const LevelEdge& edge, const Pose& T_WB);
 
-struct PlaceResidual {
-  Eigen::Matrix<double, 6, 1> residual;
-  Matrix6d by_pose;
-};
-
-// Departure from the pose that a known place gives.
-[[nodiscard]] PlaceResidual EvaluatePlace(const PoseEdge& edge, const Pose& T_WB);
-
 // Jacobian of Log(Exp(dtheta) q q0^-1) by dtheta at zero, for theta = Log(q q0^-1).
 [[nodiscard]] Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta);
+
+// What a vehicle that nothing is seen from may do besides going on as before: a car brakes by
+// about 1 m/s and turns in by about 3 deg/s before anybody would call it a surprise.
+inline constexpr double kCoastSpeedSigma_m_s = 1.0;
+inline constexpr double kCoastRateSigma_rad_s = 0.05;
 
 // A window of one pose that is known to this covariance of (dp, dtheta) in W.
 [[nodiscard]] Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance);

@@ -53,10 +53,6 @@ void AddPoseEdges(const Keyframe& keyframe, std::size_t pose, NormalEquations& n
     const HeadingResidual e = EvaluateHeading(*keyframe.heading, keyframe.T_WB);
     n.AddToPose(pose, e.by_pose, Eigen::Matrix<double, 1, 1>(e.residual));
   }
-  if (keyframe.place) {
-    const PlaceResidual e = EvaluatePlace(*keyframe.place, keyframe.T_WB);
-    n.AddToPose(pose, e.by_pose, e.residual);
-  }
   if (keyframe.level) {
     const LevelResidual e = EvaluateLevel(*keyframe.level, keyframe.T_WB);
     n.AddToPose(pose, e.by_pose, e.residual);

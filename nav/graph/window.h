@@ -31,20 +31,12 @@ struct LevelEdge {
   double sigma_rad = 0.0;
 };
 
-// A pose by a place seen before (nav/graph/place_memory.h).
-struct PoseEdge {
-  Pose T_WB;
-  double position_sigma_m = 0.0;
-  double angle_sigma_rad = 0.0;
-};
-
 struct Keyframe {
   std::uint64_t id = 0;
   TimeNs stamp = 0;
   Pose T_WB;
   std::optional<HeadingEdge> heading;
   std::optional<LevelEdge> level;
-  std::optional<PoseEdge> place;
 };
 
 struct Sighting {

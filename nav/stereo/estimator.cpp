@@ -10,11 +10,6 @@
 namespace polnav::nav {
 namespace {
 
-// What a vehicle that nothing is seen from may do besides going on as before: a car brakes by
-// about 1 m/s and turns in by about 3 deg/s before anybody would call it a surprise.
-constexpr double kCoastSpeedSigma_m_s = 1.0;
-constexpr double kCoastRateSigma_rad_s = 0.05;
-
 Matrix6d StartCovariance(const StartPrior& start) {
   Eigen::Matrix<double, 6, 1> sigmas;
   sigmas << Eigen::Vector3d::Constant(start.position_sigma_m),
@@ -34,9 +29,12 @@ StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalib
       solver_{.sigmas = adjustment_.sigmas, .inlier_sigmas = options.inlier_sigmas},
       polarization_(std::move(polarization)),
       levelling_(options.levelling),
-      places_(options.places),
       T_WB_{LevelAttitude(start.heading_rad), start.p_WB_m},
-      covariance_(StartCovariance(start)) {}
+      covariance_(StartCovariance(start)) {
+  if (options.loops.enabled) {
+    loops_.emplace(options.loops, PriorFromCovariance(T_WB_, covariance_));
+  }
+}
 
 Report StereoEstimator::Process(const Measurement& measurement) {
   if (const auto* features = std::get_if<StereoFeatures>(&measurement)) {
@@ -79,15 +77,21 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   } else if (NeedsKeyframe(report.inliers)) {
     AddKeyframe(features, views);
     OptimizeWindow();
-    places_.Remember(camera_, stamp_, T_WB_, features);
+    if (loops_) loops_->Add(camera_, window_, features, solver_);
     report.keyframes = 1;
   }
   ForgetRejected(features);
-  report.estimate = Estimate{.stamp = stamp_,
-                             .T_WB = T_WB_,
-                             .covariance = covariance_,
-                             .tracked = solution.has_value() || starting};
+  report.estimate = Answer(solution.has_value() || starting);
   return report;
+}
+
+Estimate StereoEstimator::Answer(bool tracked) const {
+  Estimate estimate{.stamp = stamp_, .T_WB = T_WB_, .covariance = covariance_, .tracked = tracked};
+  if (loops_) {
+    estimate.T_WB = loops_->InWorld(T_WB_);
+    estimate.covariance = loops_->covariance() + covariance_ - keyframe_covariance_;
+  }
+  return estimate;
 }
 
 Pose StereoEstimator::PredictPose(TimeNs stamp) const {
@@ -159,7 +163,6 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
   const bool first_levelling = levelling_.FirstIsDue();
   keyframe.level = levelling_.TakeEdge();
   if (first_levelling && polarization_) polarization_->Forget();  // taken with a guessed tilt
-  keyframe.place = places_.Recognize(camera_, stamp_, T_WB_, features, solver_);
   if (polarization_) keyframe.heading = polarization_->TakeEdge(stamp_, T_WB_.q);
   window_.keyframes.push_back(keyframe);
   std::set<std::uint64_t> trusted;
@@ -202,6 +205,7 @@ void StereoEstimator::Restart(const StereoFeatures& features) {
   window_.prior = PriorFromCovariance(T_WB_, covariance_);
   keyframe_covariance_ = covariance_;
   AddKeyframe(features, {});
+  if (loops_) loops_->Add(camera_, window_, features, solver_);
 }
 
 // Track ids are never used again once lost, so only those still seen need to be remembered.

@@ -19,7 +19,7 @@
 #include "nav/api/estimate.h"
 #include "nav/api/measurements.h"
 #include "nav/graph/bundle_adjustment.h"
-#include "nav/graph/place_memory.h"
+#include "nav/graph/loop_closing.h"
 #include "nav/graph/window.h"
 #include "nav/polarization/heading_fusion.h"
 #include "nav/stereo/levelling.h"
@@ -47,6 +47,7 @@ class StereoEstimator {
   [[nodiscard]] bool NeedsKeyframe(int inliers) const;
   void AddKeyframe(const StereoFeatures& features, const std::vector<LandmarkView>& seen);
   void OptimizeWindow();
+  [[nodiscard]] Estimate Answer(bool tracked) const;
   void Restart(const StereoFeatures& features);
   void ForgetRejected(const StereoFeatures& features);
 
@@ -57,7 +58,7 @@ class StereoEstimator {
   PoseSolverOptions solver_;
   std::optional<HeadingFusion> polarization_;
   Levelling levelling_;
-  PlaceMemory places_;
+  std::optional<LoopCloser> loops_;
 
   Window window_;
   Matrix6d keyframe_covariance_ = Matrix6d::Zero();
@@ -67,7 +68,7 @@ class StereoEstimator {
 
   TimeNs stamp_ = 0;  // of the newest frame
   TimeNs step_ = 0;   // between the newest two
-  Pose T_WB_;         // at the newest frame
+  Pose T_WB_;         // at the newest frame; in O once loops are closed, see loop_closing.h
   Pose motion_;       // T_BpB from the frame before to the newest one
   Matrix6d covariance_ = Matrix6d::Zero();
 };

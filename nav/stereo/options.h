@@ -1,7 +1,7 @@
 // How does the stereo estimator behave? YAML keys = field names.
 #pragma once
 
-#include "nav/graph/place_memory.h"
+#include "nav/graph/loop_closing.h"
 #include "nav/stereo/levelling.h"
 
 namespace polnav::nav {
@@ -62,7 +62,7 @@ struct StereoOptions {
   double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
   int max_iterations = 6;         // of the bundle adjustment, a keyframe
   LevellingOptions levelling;     // only with an IMU in the rig
-  PlaceOptions places;            // what was seen on the first lap holds the later ones
+  LoopOptions loops;              // places seen again correct the whole drive
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -78,7 +78,7 @@ struct StereoOptions {
     v("keyframe_overlap", keyframe_overlap, {.min = 0.0, .max = 1.0});
     v("max_iterations", max_iterations, {.min = 1, .max = 100});
     v("levelling", levelling);
-    v("places", places);
+    v("loops", loops);
   }
 };
 

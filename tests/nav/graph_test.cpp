@@ -46,22 +46,6 @@ TEST(LevelEdge, JacobianAgreesWithFiniteDifferences) {
   }
 }
 
-TEST(PlaceEdge, JacobianAgreesWithFiniteDifferences) {
-  const Pose pose{ExpRotation({0.05, -0.08, 1.9}), {1, 2, 3}};
-  const PoseEdge edge{.T_WB = {ExpRotation({0.02, -0.05, 1.8}), {1.2, 1.9, 3.1}},
-                      .position_sigma_m = 0.1,
-                      .angle_sigma_rad = 0.01};
-  const PlaceResidual e = EvaluatePlace(edge, pose);
-  for (int k = 0; k < 6; ++k) {
-    const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
-    const Eigen::Matrix<double, 6, 1> difference =
-        (EvaluatePlace(edge, Perturb(pose, d)).residual -
-         EvaluatePlace(edge, Perturb(pose, -d)).residual) /
-        (2.0 * kStep);
-    EXPECT_LT((difference - e.by_pose.col(k)).norm(), 1e-6) << k;
-  }
-}
-
 TEST(InverseLeftJacobian, IsTheDerivativeOfTheRotationVector) {
   const Eigen::Vector3d theta(0.3, -0.5, 0.7);
   const Eigen::Matrix3d J = InverseLeftJacobian(theta);

@@ -2,71 +2,74 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/core.hpp>
-
 #include "tests/nav/synthetic_street.h"
 
 namespace polnav::nav {
 namespace {
+
+constexpr TimeNs kLater = 60 * kNsPerSecond;
 
 class PlaceMemoryTest : public ::testing::Test {
  protected:
   RectifiedCamera camera_ = StereoRectifier(TestCalibration()).camera();
   SyntheticStreet street_{camera_, 60.0, 3};
   PoseSolverOptions solver_{.sigmas = {0.7, 0.6}, .inlier_sigmas = 2.0};
-  PlaceMemory memory_{PlaceOptions{.enabled = true}};
+  PlaceMemory memory_{PlaceOptions{}};
+  std::vector<GraphNode> nodes_;
 
-  // Features with a random descriptor that belongs to the point, whoever looks at it.
-  StereoFeatures See(const Pose& T_WB, TimeNs stamp) {
-    StereoFeatures seen = street_.See(T_WB, stamp, 0.1);
-    seen.descriptors.create(static_cast<int>(seen.features.size()), 32, CV_8UC1);
-    for (std::size_t i = 0; i < seen.features.size(); ++i) {
-      cv::RNG random(seen.features[i].id + 1);
-      cv::Mat row = seen.descriptors.row(static_cast<int>(i));
-      random.fill(row, cv::RNG::UNIFORM, 0, 256);
-    }
-    return seen;
+  StereoFeatures See(const Pose& T_WB) { return street_.SeeDescribed(T_WB, 0, 0.1); }
+
+  void VisitFirst(const Pose& T_WB) {
+    nodes_ = {{.stamp = 0, .T_WB = T_WB}};
+    memory_.Remember(camera_, nodes_, See(T_WB));
+  }
+
+  // believed: where the graph has the vehicle.
+  std::optional<RelativeEdge> VisitAgain(const Pose& believed, const StereoFeatures& seen,
+                                         TimeNs stamp = kLater) {
+    nodes_.push_back({.stamp = stamp, .T_WB = believed});
+    return memory_.Recognize(camera_, nodes_, seen, solver_);
   }
 };
 
-constexpr TimeNs kLater = 60 * kNsPerSecond;
-
 TEST_F(PlaceMemoryTest, GivesThePoseRelativeToTheFirstVisit) {
-  memory_.Remember(camera_, 0, street_.PoseAt(0.0), See(street_.PoseAt(0.0), 0));
+  VisitFirst(street_.PoseAt(0.0));
   const Pose truth = street_.PoseAt(0.8);
   Eigen::Matrix<double, 6, 1> drift;
   drift << 0.6, -0.4, 0.2, 0.005, -0.005, 0.02;
-  const auto edge =
-      memory_.Recognize(camera_, kLater, Perturb(truth, drift), See(truth, kLater), solver_);
+  const auto edge = VisitAgain(Perturb(truth, drift), See(truth));
   ASSERT_TRUE(edge);
+  EXPECT_EQ(edge->from, 0u);
+  EXPECT_EQ(edge->to, 1u);
+  const Pose expected = street_.PoseAt(0.0).Inverse() * truth;
   // Some hundred points at 0.1 px and a tenth of that in disparity error of depth: centimetres.
-  EXPECT_LT((edge->T_WB.p - truth.p).norm(), 0.05);
-  EXPECT_LT(edge->T_WB.q.angularDistance(truth.q), DegToRad(0.1));
+  EXPECT_LT((edge->T_ft.p - expected.p).norm(), 0.05);
+  EXPECT_LT(edge->T_ft.q.angularDistance(expected.q), DegToRad(0.1));
 }
 
-TEST_F(PlaceMemoryTest, AFreshPlaceOrADistantOneIsNoFix) {
+TEST_F(PlaceMemoryTest, AFreshPlaceOrADistantOneIsNoReturn) {
   const Pose here = street_.PoseAt(0.0);
-  memory_.Remember(camera_, 0, here, See(here, 0));
-  EXPECT_FALSE(memory_.Recognize(camera_, kNsPerSecond, here, See(here, kNsPerSecond), solver_));
+  VisitFirst(here);
+  EXPECT_FALSE(VisitAgain(here, See(here), kNsPerSecond));
   const Pose far = street_.PoseAt(8.0);
-  EXPECT_FALSE(memory_.Recognize(camera_, kLater, far, See(far, kLater), solver_));
+  EXPECT_FALSE(VisitAgain(far, See(far)));
 }
 
-TEST_F(PlaceMemoryTest, AnotherSceneAtTheSamePlaceIsNoFix) {
+TEST_F(PlaceMemoryTest, AnotherSceneAtTheSamePlaceIsNoReturn) {
   const Pose here = street_.PoseAt(0.0);
-  memory_.Remember(camera_, 0, here, See(here, 0));
+  VisitFirst(here);
   street_ = SyntheticStreet(camera_, 60.0, 4);
-  StereoFeatures other = See(here, kLater);
+  StereoFeatures other = See(here);
   for (FeatureObservation& f : other.features) f.id += 100000;
   cv::bitwise_not(other.descriptors, other.descriptors);
-  EXPECT_FALSE(memory_.Recognize(camera_, kLater, here, other, solver_));
+  EXPECT_FALSE(VisitAgain(here, other));
 }
 
-TEST_F(PlaceMemoryTest, ByDefaultItIsOffAndKnowsNothing) {
-  PlaceMemory off(PlaceOptions{});
+TEST_F(PlaceMemoryTest, WithoutDescriptorsThereIsNothingToKnow) {
   const Pose here = street_.PoseAt(0.0);
-  off.Remember(camera_, 0, here, See(here, 0));
-  EXPECT_FALSE(off.Recognize(camera_, kLater, here, See(here, kLater), solver_));
+  nodes_ = {{.T_WB = here}};
+  memory_.Remember(camera_, nodes_, street_.See(here, 0, 0.1));
+  EXPECT_FALSE(VisitAgain(here, street_.See(here, kLater, 0.1)));
 }
 
 }  // namespace

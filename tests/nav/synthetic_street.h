@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <random>
 #include <vector>
 
@@ -66,6 +67,18 @@ class SyntheticStreet {
       seen.features.push_back({.id = i,
                                .uv_left_px = {u_seen, v + noise(random_)},
                                .u_right_px = u_seen - disparity - noise(random_)});
+    }
+    return seen;
+  }
+
+  // See, with a random descriptor that belongs to the point, whoever looks at it.
+  [[nodiscard]] StereoFeatures SeeDescribed(const Pose& T_WB, TimeNs stamp, double sigma_px) {
+    StereoFeatures seen = See(T_WB, stamp, sigma_px);
+    seen.descriptors.create(static_cast<int>(seen.features.size()), 32, CV_8UC1);
+    for (std::size_t i = 0; i < seen.features.size(); ++i) {
+      cv::RNG random(seen.features[i].id + 1);
+      cv::Mat row = seen.descriptors.row(static_cast<int>(i));
+      random.fill(row, cv::RNG::UNIFORM, 0, 256);
     }
     return seen;
   }

@@ -1,0 +1,101 @@
+#include "nav/graph/loop_closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "nav/graph/edges.h"
+
+namespace polnav::nav {
+namespace {
+
+// What a step that hardly moves may err by all the same.
+constexpr double kLeastWay_m = 0.1;
+
+// Sigmas of a step that vision followed.
+RelativeEdge FollowedStep(const PoseGraphOptions& options, const Pose& T_ft) {
+  const double way = T_ft.p.norm();
+  const double root = std::sqrt(std::max(way, kLeastWay_m));
+  return {.T_ft = T_ft,
+          .position_sigma_m = options.step_position_sigma_m * root,
+          .angle_sigma_rad = DegToRad(options.step_angle_sigma_deg) * root,
+          .length_m = way};
+}
+
+// Sigmas of a step that was coasted.
+RelativeEdge CoastedStep(const Pose& T_ft, double dt) {
+  return {.T_ft = T_ft,
+          .position_sigma_m = kCoastSpeedSigma_m_s * dt,
+          .angle_sigma_rad = kCoastRateSigma_rad_s * dt};
+}
+
+Pose StepCorrected(const RelativeEdge& step, const Vector6d& drift) {
+  return {ExpRotation(-step.length_m * drift.tail<3>()) * step.T_ft.q,
+          step.T_ft.p - step.length_m * drift.head<3>()};
+}
+
+}  // namespace
+
+LoopCloser::LoopCloser(const LoopOptions& options, const Prior& start)
+    : options_(options), graph_{.start = start}, places_(options.places) {}
+
+void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
+                     const StereoFeatures& features, const PoseSolverOptions& solver) {
+  RefreshSteps(window);
+  AddNode(window.keyframes.back(), window.keyframes.size() > 1);
+  if (const auto seen = places_.Recognize(camera, graph_.nodes, features, solver)) {
+    graph_.returns.push_back(*seen);
+  }
+  // The first metres matter most, and cost least.
+  if (way_m_ - optimized_m_ >= std::min(options_.optimize_every_m, 0.1 * way_m_)) Optimize();
+  T_WO_ = graph_.nodes.back().T_WB * newest_T_OB_.Inverse();
+  places_.Remember(camera, graph_.nodes, features);
+}
+
+// connected: the keyframe before is in the same window.
+void LoopCloser::AddNode(const Keyframe& keyframe, bool connected) {
+  if (keyframe.id != graph_.nodes.size()) {
+    throw std::logic_error("LoopCloser: a keyframe is missing");
+  }
+  GraphNode node{.keyframe = keyframe.id,
+                 .stamp = keyframe.stamp,
+                 .T_WB = keyframe.T_WB,
+                 .heading = keyframe.heading,
+                 .level = keyframe.level};
+  if (!graph_.nodes.empty()) {
+    const GraphNode& before = graph_.nodes.back();
+    const Pose T_ft = newest_T_OB_.Inverse() * keyframe.T_WB;
+    RelativeEdge step = connected
+                            ? FollowedStep(options_.graph, T_ft)
+                            : CoastedStep(T_ft, ToSeconds(keyframe.stamp - before.stamp));
+    step.from = graph_.nodes.size() - 1;
+    step.to = graph_.nodes.size();
+    node.T_WB = before.T_WB * StepCorrected(step, graph_.drift);
+    way_m_ += T_ft.p.norm();
+    covariance_.diagonal().head<3>().array() += step.position_sigma_m * step.position_sigma_m;
+    covariance_.diagonal().tail<3>().array() += step.angle_sigma_rad * step.angle_sigma_rad;
+    graph_.steps.push_back(step);
+  }
+  graph_.nodes.push_back(node);
+  newest_T_OB_ = keyframe.T_WB;
+}
+
+// Adjusted again, the window knows its steps better than when they were made.
+void LoopCloser::RefreshSteps(const Window& window) {
+  for (std::size_t i = 1; i + 1 < window.keyframes.size(); ++i) {
+    const Keyframe& from = window.keyframes[i - 1];
+    const Keyframe& to = window.keyframes[i];
+    graph_.steps[to.id - 1].T_ft = from.T_WB.Inverse() * to.T_WB;
+  }
+  if (window.keyframes.size() > 1) newest_T_OB_ = std::prev(window.keyframes.end(), 2)->T_WB;
+}
+
+void LoopCloser::Optimize() {
+  const PoseGraphSummary summary = OptimizePoseGraph(options_.graph, graph_);
+  if (!summary.usable) return;  // tried again with the next keyframe
+  covariance_ = summary.newest_covariance;
+  optimized_m_ = way_m_;
+}
+
+}  // namespace polnav::nav
