@@ -42,7 +42,10 @@ struct Report {
   int features = 0;                  // offered
   int inliers = 0;                   // used
   int flow_rejected = 0;             // moved otherwise than the scene [Chu2021, eq. 12]
+  int gated_readings = 0;            // of polarization, kept until now, inconsistent after all
   int keyframes = 0;                 // 1 when this measurement made one
+  int returns = 0;                   // 1 when a known place was recognized
+  int failed_solves = 0;             // optimizations without a usable answer: the old one stays
   std::optional<Estimate> estimate;  // present when the measurement produced one
 };
 

@@ -22,8 +22,9 @@ struct BundleAdjustmentSummary {
   double final_cost = 0.0;
 };
 
-BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
-                                     const BundleAdjustmentOptions& options, Window& window);
+[[nodiscard]] BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
+                                                   const BundleAdjustmentOptions& options,
+                                                   Window& window);
 
 // Removes sightings further than this from where the adjusted window predicts them, and landmarks
 // left with none. Returns the track ids of removed landmarks.

@@ -41,14 +41,18 @@ LoopCloser::LoopCloser(const LoopOptions& options, const Prior& start)
     : options_(options), graph_{.start = start}, places_(options.places) {}
 
 void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
-                     const StereoFeatures& features, const PoseSolverOptions& solver) {
+                     const StereoFeatures& features, const PoseSolverOptions& solver,
+                     Report& report) {
   RefreshSteps(window);
   AddNode(window.keyframes.back(), window.keyframes.size() > 1);
   if (const auto seen = places_.Recognize(camera, graph_.nodes, features, solver)) {
     graph_.returns.push_back(*seen);
+    report.returns = 1;
   }
   // The first metres matter most, and cost least.
-  if (way_m_ - optimized_m_ >= std::min(options_.optimize_every_m, 0.1 * way_m_)) Optimize();
+  if (way_m_ - optimized_m_ >= std::min(options_.optimize_every_m, 0.1 * way_m_)) {
+    Optimize(report);
+  }
   T_WO_ = graph_.nodes.back().T_WB * newest_T_OB_.Inverse();
   places_.Remember(camera, graph_.nodes, features);
 }
@@ -66,9 +70,8 @@ void LoopCloser::AddNode(const Keyframe& keyframe, bool connected) {
   if (!graph_.nodes.empty()) {
     const GraphNode& before = graph_.nodes.back();
     const Pose T_ft = newest_T_OB_.Inverse() * keyframe.T_WB;
-    RelativeEdge step = connected
-                            ? FollowedStep(options_.graph, T_ft)
-                            : CoastedStep(T_ft, ToSeconds(keyframe.stamp - before.stamp));
+    RelativeEdge step = connected ? FollowedStep(options_.graph, T_ft)
+                                  : CoastedStep(T_ft, ToSeconds(keyframe.stamp - before.stamp));
     step.from = graph_.nodes.size() - 1;
     step.to = graph_.nodes.size();
     node.T_WB = before.T_WB * StepCorrected(step, graph_.drift);
@@ -91,9 +94,12 @@ void LoopCloser::RefreshSteps(const Window& window) {
   if (window.keyframes.size() > 1) newest_T_OB_ = std::prev(window.keyframes.end(), 2)->T_WB;
 }
 
-void LoopCloser::Optimize() {
+void LoopCloser::Optimize(Report& report) {
   const PoseGraphSummary summary = OptimizePoseGraph(options_.graph, graph_);
-  if (!summary.usable) return;  // tried again with the next keyframe
+  if (!summary.usable) {  // tried again with the next keyframe
+    ++report.failed_solves;
+    return;
+  }
   covariance_ = summary.newest_covariance;
   optimized_m_ = way_m_;
 }

@@ -2,7 +2,7 @@
 //
 // Keeps every keyframe in a pose graph with the returns, the sky's headings and the level in it,
 // and answers in W what odometry knows in O, the frame of its own that the window has drifted to.
-// The window is left alone: with loops switched off nothing is different.
+// The window is left alone: without loop closing nothing in it is different.
 #pragma once
 
 #include "nav/api/estimate.h"
@@ -13,14 +13,12 @@
 namespace polnav::nav {
 
 struct LoopOptions {
-  bool enabled = false;
   double optimize_every_m = 10.0;  // of way, sooner at the start; shorter: slower
   PoseGraphOptions graph;
   PlaceOptions places;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
-    v("enabled", enabled);
     v("optimize_every_m", optimize_every_m, {.min = 0.0, .max = 1000.0});
     v("graph", graph);
     v("places", places);
@@ -33,8 +31,9 @@ class LoopCloser {
   LoopCloser(const LoopOptions& options, const Prior& start);
 
   // The window's newest keyframe, just adjusted, and what it sees. Every keyframe must come.
+  // Tells `report` of a return, and of an optimization that failed.
   void Add(const RectifiedCamera& camera, const Window& window, const StereoFeatures& features,
-           const PoseSolverOptions& solver);
+           const PoseSolverOptions& solver, Report& report);
 
   [[nodiscard]] Pose InWorld(const Pose& T_OB) const { return T_WO_ * T_OB; }
 
@@ -46,7 +45,7 @@ class LoopCloser {
  private:
   void AddNode(const Keyframe& keyframe, bool connected);
   void RefreshSteps(const Window& window);
-  void Optimize();
+  void Optimize(Report& report);
 
   LoopOptions options_;
   PoseGraph graph_;

@@ -65,12 +65,11 @@ std::optional<RelativeEdge> PlaceMemory::Recognize(const RectifiedCamera& camera
       last_return_ ? ToSeconds(now.stamp - *last_return_) : options_.correlation_time_s;
   const double share = std::max(1.0, 2.0 * options_.correlation_time_s / std::max(since, 1e-3));
   last_return_ = now.stamp;
-  return RelativeEdge{
-      .from = place->node,
-      .to = nodes.size() - 1,
-      .T_ft = then.T_WB.Inverse() * fix->T_WB,
-      .position_sigma_m = options_.position_sigma_m * std::sqrt(share),
-      .angle_sigma_rad = DegToRad(options_.angle_sigma_deg) * std::sqrt(share)};
+  return RelativeEdge{.from = place->node,
+                      .to = nodes.size() - 1,
+                      .T_ft = then.T_WB.Inverse() * fix->T_WB,
+                      .position_sigma_m = options_.position_sigma_m * std::sqrt(share),
+                      .angle_sigma_rad = DegToRad(options_.angle_sigma_deg) * std::sqrt(share)};
 }
 
 void PlaceMemory::Remember(const RectifiedCamera& camera, const std::vector<GraphNode>& nodes,

@@ -18,9 +18,7 @@ class SparseEquations {
     g_ = Eigen::VectorXd::Zero(size_);
   }
 
-  [[nodiscard]] std::size_t drift_block() const {
-    return static_cast<std::size_t>(size_ / 6 - 1);
-  }
+  [[nodiscard]] std::size_t drift_block() const { return static_cast<std::size_t>(size_ / 6 - 1); }
 
   // Blocks must be given with their places in ascending order.
   template <int kRows, std::size_t kBlocks>

@@ -30,12 +30,13 @@ Outcome HeadingFusion::Add(const PolarizationSample& sample) {
   return Outcome::kUsed;
 }
 
-void HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
-                            const Eigen::Quaterniond& q_to, double heading_variance) {
+int HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
+                           const Eigen::Quaterniond& q_to, double heading_variance) {
   const double white = DegToRad(options_.reading_sigma_deg);
   const double slow = DegToRad(options_.correlated_sigma_deg);
   const double limit =
       options_.gate_sigmas * std::sqrt(white * white + slow * slow + heading_variance);
+  int gated = 0;
   const auto later = [&](const Reading& r) { return r.stamp > to; };
   for (const Reading& reading : waiting_) {
     if (later(reading)) continue;
@@ -46,14 +47,14 @@ void HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeN
     const auto heading = HeadingFromEVector(reading.e_B, q_WB, sun_(reading.stamp));
     const double innovation = heading ? WrapPi(*heading - CompassHeading(q_WB)) : limit + 1.0;
     if (std::abs(innovation) > limit) {
-      ++gated_;
+      ++gated;
       continue;
     }
-    ++used_;
     ++innovations_;
     innovation_sum_rad_ += innovation;
   }
   std::erase_if(waiting_, [&](const Reading& r) { return !later(r); });
+  return gated;
 }
 
 void HeadingFusion::Forget() {

@@ -31,19 +31,16 @@ class HeadingFusion {
   // Keeps the reading until the attitude at its stamp is known.
   Outcome Add(const PolarizationSample& sample);
 
-  // Attitudes at two frames; uses the readings up to the later one.
+  // Attitudes at two frames; uses the readings up to the later one. Returns how many were gated.
   // heading_variance: of vision's heading [rad^2], for the gate.
-  void Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
-               const Eigen::Quaterniond& q_to, double heading_variance);
+  [[nodiscard]] int Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
+                            const Eigen::Quaterniond& q_to, double heading_variance);
 
   // The heading of the keyframe at `stamp`, whose vision attitude is q_WB; empties the average.
   [[nodiscard]] std::optional<HeadingEdge> TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB);
 
   // Forgets the average so far: the attitudes that it was made with have turned out wrong.
   void Forget();
-
-  [[nodiscard]] int used() const { return used_; }
-  [[nodiscard]] int gated() const { return gated_; }
 
  private:
   struct Reading {
@@ -58,8 +55,6 @@ class HeadingFusion {
   double innovation_sum_rad_ = 0.0;
   int innovations_ = 0;
   std::optional<TimeNs> last_edge_;
-  int used_ = 0;
-  int gated_ = 0;
 };
 
 }  // namespace polnav::nav

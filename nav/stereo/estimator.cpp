@@ -20,7 +20,8 @@ Matrix6d StartCovariance(const StartPrior& start) {
 }  // namespace
 
 StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
-                                 const StartPrior& start, std::optional<HeadingFusion> polarization)
+                                 const StartPrior& start, std::optional<HeadingFusion> polarization,
+                                 bool close_loops)
     : options_(options),
       camera_(StereoRectifier(calibration).camera()),
       start_(start),
@@ -31,9 +32,7 @@ StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalib
       levelling_(options.levelling),
       T_WB_{LevelAttitude(start.heading_rad), start.p_WB_m},
       covariance_(StartCovariance(start)) {
-  if (options.loops.enabled) {
-    loops_.emplace(options.loops, PriorFromCovariance(T_WB_, covariance_));
-  }
+  if (close_loops) loops_.emplace(options.loops, PriorFromCovariance(T_WB_, covariance_));
 }
 
 Report StereoEstimator::Process(const Measurement& measurement) {
@@ -67,17 +66,18 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   step_ = features.stamp - before;
   stamp_ = features.stamp;
   if (polarization_) {
-    polarization_->Advance(before, q_before, stamp_, T_WB_.q, covariance_(5, 5));
+    report.gated_readings =
+        polarization_->Advance(before, q_before, stamp_, T_WB_.q, covariance_(5, 5));
   }
   report.inliers = solution ? solution->inliers : 0;
   if (!solution) {
     report.outcome = starting ? Outcome::kUsed : Outcome::kUnusable;
-    Restart(features);
+    Restart(features, report);
     report.keyframes = 1;
   } else if (NeedsKeyframe(report.inliers)) {
     AddKeyframe(features, views);
-    OptimizeWindow();
-    if (loops_) loops_->Add(camera_, window_, features, solver_);
+    OptimizeWindow(report);
+    if (loops_) loops_->Add(camera_, window_, features, solver_, report);
     report.keyframes = 1;
   }
   ForgetRejected(features);
@@ -185,8 +185,8 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
   }
 }
 
-void StereoEstimator::OptimizeWindow() {
-  AdjustBundle(camera_, adjustment_, window_);
+void StereoEstimator::OptimizeWindow(Report& report) {
+  if (!AdjustBundle(camera_, adjustment_, window_).usable) ++report.failed_solves;
   for (const std::uint64_t id :
        RemoveOutliers(camera_, adjustment_.sigmas, options_.inlier_sigmas, window_)) {
     rejected_.insert(id);
@@ -200,12 +200,12 @@ void StereoEstimator::OptimizeWindow() {
 }
 
 // Begins a new window at the current pose: at the start, and when sight of the old one is lost.
-void StereoEstimator::Restart(const StereoFeatures& features) {
+void StereoEstimator::Restart(const StereoFeatures& features, Report& report) {
   window_ = {};
   window_.prior = PriorFromCovariance(T_WB_, covariance_);
   keyframe_covariance_ = covariance_;
   AddKeyframe(features, {});
-  if (loops_) loops_->Add(camera_, window_, features, solver_);
+  if (loops_) loops_->Add(camera_, window_, features, solver_, report);
 }
 
 // Track ids are never used again once lost, so only those still seen need to be remembered.

@@ -31,8 +31,10 @@ namespace polnav::nav {
 
 class StereoEstimator {
  public:
+  // close_loops: places seen again correct the whole drive; needs features with descriptors.
   StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
-                  const StartPrior& start, std::optional<HeadingFusion> polarization);
+                  const StartPrior& start, std::optional<HeadingFusion> polarization,
+                  bool close_loops = false);
 
   [[nodiscard]] Report Process(const Measurement& measurement);
 
@@ -46,9 +48,9 @@ class StereoEstimator {
   void Coast(const Pose& expected, TimeNs stamp);
   [[nodiscard]] bool NeedsKeyframe(int inliers) const;
   void AddKeyframe(const StereoFeatures& features, const std::vector<LandmarkView>& seen);
-  void OptimizeWindow();
+  void OptimizeWindow(Report& report);
   [[nodiscard]] Estimate Answer(bool tracked) const;
-  void Restart(const StereoFeatures& features);
+  void Restart(const StereoFeatures& features, Report& report);
   void ForgetRejected(const StereoFeatures& features);
 
   StereoOptions options_;

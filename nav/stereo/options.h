@@ -12,8 +12,8 @@ struct TrackerOptions {
   int max_features = 300;  // more: steadier and slower
   int grid_columns = 16;   // the image is cut into cells that share the features evenly
   int grid_rows = 9;
-  int min_distance_px = 10;      // between features
-  double corner_quality = 0.01;  // of a cell's corner over the image's best [-]
+  int min_distance_px = 10;       // between features
+  double corner_quality = 0.001;  // of a cell's corner over the image's best [-]
   // Sigma of a blur before tracking; 0: none. Takes noise and aliasing from the patches, and
   // detail.
   double smoothing_px = 1.0;
@@ -62,7 +62,7 @@ struct StereoOptions {
   double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
   int max_iterations = 6;         // of the bundle adjustment, a keyframe
   LevellingOptions levelling;     // only with an IMU in the rig
-  LoopOptions loops;              // places seen again correct the whole drive
+  LoopOptions loops;              // only where the estimator closes loops
 
   template <typename Visitor>
   void Visit(Visitor& v) {

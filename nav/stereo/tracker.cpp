@@ -10,8 +10,8 @@
 namespace polnav::nav {
 namespace {
 
-// Stopping at a step of 0.01 px would leave that much of the first guess in every position, always
-// to the same side: 3700 frames of it are degrees of drift.
+// Stopping at a step of 0.01 px may leave that much of the first guess in a position, and always to
+// the same side.
 const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001);
 
 constexpr std::uint64_t kNoReference = ~std::uint64_t{0};
@@ -58,8 +58,9 @@ std::vector<bool> FollowBothWays(const std::vector<cv::Mat>& from_pyramid,
 
 }  // namespace
 
-StereoTracker::StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration)
-    : options_(options), rectifier_(calibration) {}
+StereoTracker::StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration,
+                             bool describe)
+    : options_(options), rectifier_(calibration), describe_(describe) {}
 
 StereoFeatures StereoTracker::Track(const StereoImages& images) {
   if (images.left.type() != CV_8UC1 || images.left.size() != images.right.size()) {
@@ -75,7 +76,7 @@ StereoFeatures StereoTracker::Track(const StereoImages& images) {
   pyramid_ = left;
   Detect(images.left);
   StereoFeatures features = MatchStereo(images.stamp, right);
-  features.descriptors = Describe(images.left);
+  if (describe_) features.descriptors = Describe(images.left);
   RenewReferences();
   return features;
 }
@@ -172,7 +173,7 @@ void StereoTracker::RenewReferences() {
 // Fills the grid's empty places with the strongest corners, cell by cell.
 void StereoTracker::Detect(const cv::Mat& left) {
   const int cells = options_.grid_columns * options_.grid_rows;
-  const int per_cell = (options_.max_features + cells - 1) / cells;
+  const int per_cell = std::max(1, options_.max_features / cells);
   const auto cell_of = [&](const cv::Point2f& p) {
     const int column = std::min(static_cast<int>(p.x * options_.grid_columns / left.cols),
                                 options_.grid_columns - 1);
@@ -188,8 +189,8 @@ void StereoTracker::Detect(const cv::Mat& left) {
   }
   if (static_cast<int>(tracked_.size()) >= options_.max_features) return;
   std::vector<cv::Point2f> corners;
-  cv::goodFeaturesToTrack(left, corners, 4 * options_.max_features, options_.corner_quality,
-                          options_.min_distance_px, mask, 5);
+  cv::goodFeaturesToTrack(left, corners, 0, options_.corner_quality, options_.min_distance_px, mask,
+                          5);
   std::vector<cv::Point2f> fresh;
   for (const cv::Point2f& corner : corners) {
     int& count = filled[static_cast<std::size_t>(cell_of(corner))];

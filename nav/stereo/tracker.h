@@ -18,7 +18,9 @@ namespace polnav::nav {
 
 class StereoTracker {
  public:
-  StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration);
+  // describe: with descriptors, which loop closing needs and nothing else.
+  StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration,
+                bool describe = false);
 
   [[nodiscard]] StereoFeatures Track(const StereoImages& images);
 
@@ -50,6 +52,7 @@ class StereoTracker {
 
   TrackerOptions options_;
   StereoRectifier rectifier_;
+  bool describe_;
   std::uint64_t frame_ = 0;                      // number of the newest one
   Pyramid pyramid_;                              // of its left image
   std::map<std::uint64_t, Pyramid> references_;  // left images by frame number

@@ -96,7 +96,7 @@ TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
     sample.stamp = i * kNsPerSecond / 20;
     EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
   }
-  fusion.Advance(0, believed, kNsPerSecond, believed, 0.01);
+  EXPECT_EQ(fusion.Advance(0, believed, kNsPerSecond, believed, 0.01), 0);
   const auto edge = fusion.TakeEdge(kNsPerSecond, believed);
   ASSERT_TRUE(edge);
   EXPECT_NEAR(edge->heading_rad, 0.7, 1e-9);
@@ -109,8 +109,7 @@ TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
   HeadingFusion fusion({}, {}, [&](TimeNs) { return sun; });
   const Eigen::Vector3d e = ZenithEVector(LevelAttitude(0.7), sun);
   ASSERT_EQ(fusion.Add(Channels(0.3, 0.5, std::atan2(e.y(), e.x()))), Outcome::kUsed);
-  fusion.Advance(0, LevelAttitude(1.2), 0, LevelAttitude(1.2), 1e-6);
-  EXPECT_EQ(fusion.gated(), 1);
+  EXPECT_EQ(fusion.Advance(0, LevelAttitude(1.2), 0, LevelAttitude(1.2), 1e-6), 1);
   EXPECT_FALSE(fusion.TakeEdge(0, LevelAttitude(1.2)));
 }
 

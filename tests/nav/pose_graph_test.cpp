@@ -40,13 +40,13 @@ struct CircleDrive {
   [[nodiscard]] RelativeEdge Step(std::size_t to, const Vector6d& drift) const {
     const Pose T_ft = truth[to - 1].Inverse() * truth[to];
     const double length = T_ft.p.norm();
-    return {.from = to - 1,
-            .to = to,
-            .T_ft = {ExpRotation(length * drift.tail<3>()) * T_ft.q,
-                     T_ft.p + length * drift.head<3>()},
-            .position_sigma_m = 0.01,
-            .angle_sigma_rad = DegToRad(0.02),
-            .length_m = length};
+    return {
+        .from = to - 1,
+        .to = to,
+        .T_ft = {ExpRotation(length * drift.tail<3>()) * T_ft.q, T_ft.p + length * drift.head<3>()},
+        .position_sigma_m = 0.01,
+        .angle_sigma_rad = DegToRad(0.02),
+        .length_m = length};
   }
 
   void AddReturn(std::size_t from, std::size_t to) {

@@ -52,6 +52,11 @@ struct RunningEstimator {
   nav::StereoEstimator estimator;
 };
 
+bool ClosesLoops(const Scenario& scenario, const std::string& name) {
+  const auto& names = scenario.estimators.close_loops;
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 nav::StereoEstimator MakeEstimator(const std::string& name, const Scenario& scenario,
                                    const nav::Rig& rig, const nav::StartPrior& start) {
   std::optional<nav::HeadingFusion> polarization;
@@ -59,7 +64,8 @@ nav::StereoEstimator MakeEstimator(const std::string& name, const Scenario& scen
     polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),
                          SunFor(scenario.site));
   }
-  return {scenario.estimators.stereo, rig.stereo.value(), start, std::move(polarization)};
+  return {scenario.estimators.stereo, rig.stereo.value(), start, std::move(polarization),
+          ClosesLoops(scenario, name)};
 }
 
 // The corners that the front end follows.
@@ -80,7 +86,11 @@ class Loop {
         rig_(sim::NominalRig(scenario.sensors)),
         duration_(nav::FromSeconds(scenario.duration_s)),
         readings_(rig_.polarimeter, SunFor(scenario.site)) {
-    if (rig_.stereo) tracker_.emplace(scenario.estimators.stereo.tracker, *rig_.stereo);
+    const auto& run = scenario.estimators.run;
+    const bool describe = std::any_of(run.begin(), run.end(), [&](const std::string& name) {
+      return ClosesLoops(scenario, name);
+    });
+    if (rig_.stereo) tracker_.emplace(scenario.estimators.stereo.tracker, *rig_.stereo, describe);
   }
 
   RunRecord Run(const std::function<void(double)>& progress) {

@@ -13,10 +13,17 @@ namespace polnav::testbed {
 namespace {
 
 Json ToJson(const OutcomeCounts& counts) {
-  return {{"used", counts.used},           {"gated", counts.gated},
-          {"unusable", counts.unusable},   {"ignored", counts.ignored},
-          {"keyframes", counts.keyframes}, {"features", counts.features},
-          {"inliers", counts.inliers},     {"flow_rejected", counts.flow_rejected}};
+  return {{"used", counts.used},
+          {"gated", counts.gated},
+          {"unusable", counts.unusable},
+          {"ignored", counts.ignored},
+          {"keyframes", counts.keyframes},
+          {"features", counts.features},
+          {"inliers", counts.inliers},
+          {"flow_rejected", counts.flow_rejected},
+          {"returns", counts.returns},
+          {"gated_readings", counts.gated_readings},
+          {"failed_solves", counts.failed_solves}};
 }
 
 Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {

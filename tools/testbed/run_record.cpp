@@ -13,6 +13,9 @@ void OutcomeCounts::Add(const nav::Report& report) {
   features += static_cast<std::uint64_t>(report.features);
   inliers += static_cast<std::uint64_t>(report.inliers);
   flow_rejected += static_cast<std::uint64_t>(report.flow_rejected);
+  gated_readings += static_cast<std::uint64_t>(report.gated_readings);
+  returns += static_cast<std::uint64_t>(report.returns);
+  failed_solves += static_cast<std::uint64_t>(report.failed_solves);
 }
 
 std::string HashOf(const std::vector<nav::Estimate>& estimates) {

@@ -27,6 +27,10 @@ struct OutcomeCounts {
   std::uint64_t inliers = 0;
   std::uint64_t flow_rejected = 0;  // moved otherwise than the scene [Chu2021, eq. 12]
 
+  std::uint64_t gated_readings = 0;
+  std::uint64_t returns = 0;  // places recognized
+  std::uint64_t failed_solves = 0;
+
   void Add(const nav::Report& report);
 };
 

@@ -42,30 +42,37 @@ void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors)
   check("reference", sensors.reference);
 }
 
-void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
+const EstimatorInfo& FindEstimator(const YamlDocument& document, const std::string& key,
+                                   const std::string& name) {
+  const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
+                                 [&](const EstimatorInfo& i) { return i.name == name; });
+  if (info != kEstimators.end()) return *info;
   std::vector<std::string> names;
-  for (const EstimatorInfo& info : kEstimators) names.emplace_back(info.name);
+  for (const EstimatorInfo& known : kEstimators) names.emplace_back(known.name);
+  const std::string nearest = NearestWord(name, names);
+  FailAt(document, key,
+         fmt::format("'{}' is not one of: {}{}", name, fmt::join(names, ", "),
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
+void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
   std::set<std::string> seen;
   for (const std::string& name : scenario.estimators.run) {
-    const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
-                                   [&](const EstimatorInfo& i) { return i.name == name; });
-    if (info == kEstimators.end()) {
-      const std::string nearest = NearestWord(name, names);
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' is not one of: {}{}", name, fmt::join(names, ", "),
-                         nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
-    }
+    const EstimatorInfo& info = FindEstimator(document, "estimators.run", name);
     if (!seen.insert(name).second) {
       FailAt(document, "estimators.run", fmt::format("'{}' is listed twice", name));
     }
-    if (info->needs_stereo && !scenario.sensors.stereo) {
+    if (info.needs_stereo && !scenario.sensors.stereo) {
       FailAt(document, "estimators.run",
              fmt::format("'{}' needs cameras, but sensors.stereo is off", name));
     }
-    if (info->needs_polarimeter && !scenario.sensors.polarimeter) {
+    if (info.needs_polarimeter && !scenario.sensors.polarimeter) {
       FailAt(document, "estimators.run",
              fmt::format("'{}' needs a polarimeter, but sensors.polarimeter is off", name));
     }
+  }
+  for (const std::string& name : scenario.estimators.close_loops) {
+    (void)FindEstimator(document, "estimators.close_loops", name);
   }
 }
 

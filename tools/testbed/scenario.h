@@ -32,6 +32,8 @@ struct StartOptions {
 
 struct EstimatorOptions {
   std::vector<std::string> run;  // names; see estimators.h
+  // Names of those that correct themselves where a place is seen again. The others are odometry.
+  std::vector<std::string> close_loops;
   StartOptions start;
   nav::StereoOptions stereo;
   nav::PolarizationOptions polarization;
@@ -39,6 +41,7 @@ struct EstimatorOptions {
   template <typename Visitor>
   void Visit(Visitor& v) {
     v("run", run);
+    v("close_loops", close_loops);
     v("start", start);
     v("stereo", stereo);
     v("polarization", polarization);
