@@ -62,6 +62,9 @@ TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
             "stereo_polarization; did you mean 'stereo'?");
   EXPECT_EQ(ErrorWith("estimators.run=[stereo, stereo]"),
             "--set estimators.run=[stereo, stereo]: estimators.run: 'stereo' is listed twice");
+  EXPECT_EQ(ErrorWith("estimators.close_loops=[stereos]"),
+            "--set estimators.close_loops=[stereos]: estimators.close_loops: 'stereos' is not one "
+            "of: stereo, stereo_polarization; did you mean 'stereo'?");
 }
 
 TEST(Scenario, RefusesDurationsThatAreNotWholeMilliseconds) {
