@@ -2,27 +2,46 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "tests/nav/synthetic_street.h"
 
 namespace polnav::nav {
 namespace {
 
-// Smooth random texture, shifted by an exact sub-pixel amount.
+// Random light and dark Gaussian spots, evaluated at the shifted pixels themselves: interpolating
+// one picture to make the other would move it by up to 0.05 px more than asked.
 cv::Mat Texture(double shift_x, double shift_y) {
+  constexpr float kSigma_px = 2.5F;
+  constexpr int kReach_px = 10;
   cv::RNG random(11);
-  cv::Mat noise(480, 800, CV_8UC1);
-  random.fill(noise, cv::RNG::UNIFORM, 0, 255);
-  cv::Mat smooth;
-  cv::GaussianBlur(noise, smooth, {}, 2.5);
-  cv::normalize(smooth, smooth, 0, 255, cv::NORM_MINMAX);
-  const cv::Matx23d move(1, 0, shift_x - 60.0, 0, 1, shift_y - 50.0);
-  cv::Mat shifted;
-  cv::warpAffine(smooth, shifted, move, {672, 376}, cv::INTER_CUBIC);
-  return shifted;
+  cv::Mat sum = cv::Mat::zeros(376, 672, CV_32FC1);
+  for (int spot = 0; spot < 20000; ++spot) {
+    const double x = random.uniform(-30.0, 702.0) + shift_x;
+    const double y = random.uniform(-30.0, 406.0) + shift_y;
+    const auto strength = static_cast<float>(random.gaussian(1.0));
+    const cv::Rect around = cv::Rect(static_cast<int>(std::floor(x)) - kReach_px,
+                                     static_cast<int>(std::floor(y)) - kReach_px, 2 * kReach_px + 2,
+                                     2 * kReach_px + 2) &
+                            cv::Rect(0, 0, sum.cols, sum.rows);
+    const auto bell = [&](double distance) {
+      return std::exp(-0.5F * static_cast<float>(distance * distance) / (kSigma_px * kSigma_px));
+    };
+    std::vector<float> across;
+    for (int col = around.x; col < around.x + around.width; ++col) across.push_back(bell(col - x));
+    for (int row = around.y; row < around.y + around.height; ++row) {
+      const float down = strength * bell(row - y);
+      for (int i = 0; i < around.width; ++i) {
+        sum.at<float>(row, around.x + i) += down * across[static_cast<std::size_t>(i)];
+      }
+    }
+  }
+  cv::Mat grey;
+  sum.convertTo(grey, CV_8UC1, 127.0 / 5.0, 127.5);  // spots overlap: one sigma is about 1.5
+  return grey;
 }
 
 std::map<std::uint64_t, FeatureObservation> ById(const StereoFeatures& features) {
