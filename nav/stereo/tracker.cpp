@@ -15,6 +15,8 @@ namespace {
 const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001);
 
 constexpr std::uint64_t kNoReference = ~std::uint64_t{0};
+// Pictures kept to hold tracks against, 2.3 MB each at VGA; driving needs about thirty.
+constexpr std::size_t kMaxReferences = 48;
 
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image, const TrackerOptions& options) {
   std::vector<cv::Mat> pyramid;
@@ -155,17 +157,27 @@ cv::Mat StereoTracker::Describe(const cv::Mat& left) const {
 // Begins anew where a reference is missing or shows the point from too near or too far.
 void StereoTracker::RenewReferences() {
   references_[frame_] = pyramid_;
+  const auto renew = [this](Tracked& t) {
+    t.reference = frame_;
+    t.reference_raw = t.raw;
+    t.reference_disparity = t.disparity;
+  };
   std::set<std::uint64_t> needed;
   for (Tracked& t : tracked_) {
     // Both far: a pixel of disparity more or less is no change of scale worth speaking of.
     const float change = (t.disparity + 1.0F) / (t.reference_disparity + 1.0F);
     const auto bound = static_cast<float>(options_.reference_scale);
-    if (t.reference == kNoReference || change > bound || change < 1.0F / bound) {
-      t.reference = frame_;
-      t.reference_raw = t.raw;
-      t.reference_disparity = t.disparity;
-    }
+    if (t.reference == kNoReference || change > bound || change < 1.0F / bound) renew(t);
     needed.insert(t.reference);
+  }
+  // Slow or standing, a vehicle would end with a picture for every track.
+  while (needed.size() > kMaxReferences) {
+    const std::uint64_t oldest = *needed.begin();
+    for (Tracked& t : tracked_) {
+      if (t.reference == oldest) renew(t);
+    }
+    needed.erase(oldest);
+    needed.insert(frame_);
   }
   std::erase_if(references_, [&](const auto& entry) { return !needed.contains(entry.first); });
 }
