@@ -15,9 +15,9 @@ MeasurementStream::MeasurementStream(const SimulatorOptions& options, const RunK
                                      nav::TimeNs duration, int render_threads)
     : options_(options), key_(key), simulator_(options, key) {
   if (render_threads < 1) throw std::logic_error("MeasurementStream: needs a render thread");
-  // Enough for every camera to be busy while one frame waits in front of the estimators.
-  frames_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;
-  if (simulator_.true_stereo()) {
+  // Enough for every camera to be busy while one picture waits in front of the estimators.
+  pictures_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;
+  if (simulator_.true_stereo() || simulator_.polarization_camera()) {
     for (int i = 0; i < render_threads; ++i) threads_.emplace_back([this] { TakePictures(); });
   }
   threads_.emplace_back([this, duration] { Simulate(duration); });
@@ -51,13 +51,19 @@ void MeasurementStream::Simulate(nav::TimeNs duration) {
 bool MeasurementStream::Push(const Simulator::Emission& emission) {
   std::unique_lock lock(mutex_);
   room_.wait(lock, [&] {
-    return abandoned_ || (frames_under_way_ < frames_under_way_max_ && slots_.size() < kSlotsMax);
+    return abandoned_ ||
+           (pictures_under_way_ < pictures_under_way_max_ && slots_.size() < kSlotsMax);
   });
-  if (const auto* request = std::get_if<FrameRequest>(&emission)) {
-    jobs_.push_back({*request, {}});
+  const auto ask = [&](const PictureRequest& request) {
+    jobs_.push_back({request, {}});
     slots_.emplace_back(jobs_.back().done.get_future());
-    ++frames_under_way_;
+    ++pictures_under_way_;
     job_.notify_one();
+  };
+  if (const auto* request = std::get_if<FrameRequest>(&emission)) {
+    ask(*request);
+  } else if (const auto* sky = std::get_if<SkyRequest>(&emission)) {
+    ask(*sky);
   } else if (const auto* truth = std::get_if<Truth>(&emission)) {
     slots_.emplace_back(StreamItem(*truth));
   } else if (const auto* imu = std::get_if<nav::ImuSample>(&emission)) {
@@ -77,24 +83,37 @@ void MeasurementStream::TakePictures() {
     std::unique_lock lock(mutex_);
     job_.wait(lock, [&] { return abandoned_ || finished_ || !jobs_.empty(); });
     if (abandoned_ || jobs_.empty()) return;
-    FrameJob job = std::move(jobs_.front());
+    PictureJob job = std::move(jobs_.front());
     jobs_.pop_front();
     lock.unlock();
     try {
-      if (!camera) {
-        camera.emplace(simulator_.scene(), simulator_.sky(), *simulator_.true_stereo(),
-                       *options_.sensors.stereo, key_.seed, key_.trial);
-      }
-      const auto begin = std::chrono::steady_clock::now();
-      TimedImages taken{
-          .images = camera->Capture(job.request.T_WB, job.request.stamp, job.request.index)};
-      const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
-      taken.render_ms = ms.count();
-      job.done.set_value(std::move(taken));
+      job.done.set_value(Take(job.request, camera));
     } catch (...) {
       job.done.set_exception(std::current_exception());
     }
   }
+}
+
+MeasurementStream::TimedPicture MeasurementStream::Take(const PictureRequest& request,
+                                                        std::optional<StereoCamera>& camera) const {
+  const auto* frame = std::get_if<FrameRequest>(&request);
+  if (frame != nullptr && !camera) {
+    camera.emplace(simulator_.scene(), simulator_.sky(), *simulator_.true_stereo(),
+                   *options_.sensors.stereo, key_.seed, key_.trial);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  TimedPicture taken;
+  if (frame != nullptr) {
+    taken = {.picture = camera->Capture(frame->T_WB, frame->stamp, frame->index),
+             .stage = "render"};
+  } else {
+    const auto& sky = std::get<SkyRequest>(request);
+    taken = {.picture = simulator_.polarization_camera()->Take(sky.truth, sky.index),
+             .stage = "sky_camera"};
+  }
+  const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
+  taken.ms = ms.count();
+  return taken;
 }
 
 std::optional<StreamItem> MeasurementStream::Next() {
@@ -109,12 +128,12 @@ std::optional<StreamItem> MeasurementStream::Next() {
   room_.notify_one();
   if (auto* item = std::get_if<StreamItem>(&slot)) return std::move(*item);
   lock.unlock();
-  TimedImages taken = std::get<std::future<TimedImages>>(slot).get();
+  TimedPicture taken = std::get<std::future<TimedPicture>>(slot).get();
   lock.lock();
-  --frames_under_way_;
-  render_ms_.push_back(taken.render_ms);
+  --pictures_under_way_;
+  picture_ms_[taken.stage].push_back(taken.ms);
   room_.notify_one();
-  return StreamItem(nav::Measurement(std::move(taken.images)));
+  return StreamItem(std::move(taken.picture));
 }
 
 }  // namespace polnav::sim

@@ -1,7 +1,7 @@
 // How do measurements come out in order while pictures are still being taken?
 //
 // One thread steps the simulator, `render_threads` threads take its pictures, and Next() hands
-// everything over in order of stamps. A bounded number of frames is under way, so memory does not
+// everything over in order of stamps. A bounded number of pictures is under way, so memory does not
 // grow and a slow estimator slows the simulation instead of missing anything. What comes out does
 // not depend on the number of threads.
 #pragma once
@@ -9,8 +9,10 @@
 #include <condition_variable>
 #include <deque>
 #include <future>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -19,12 +21,6 @@
 #include "sim/simulator.h"
 
 namespace polnav::sim {
-
-// Wall time that one picture pair took, for reports only.
-struct TimedImages {
-  nav::StereoImages images;
-  double render_ms = 0.0;
-};
 
 using StreamItem = std::variant<Truth, nav::Measurement>;
 
@@ -40,36 +36,46 @@ class MeasurementStream {
   // Nothing at the end. Rethrows what went wrong in the threads behind it.
   [[nodiscard]] std::optional<StreamItem> Next();
 
-  // One entry a stereo frame handed over so far [ms].
-  [[nodiscard]] const std::vector<double>& render_ms() const { return render_ms_; }
+  // Wall times of the pictures handed over so far, by what took them; for reports only [ms].
+  [[nodiscard]] const std::map<std::string, std::vector<double>>& picture_ms() const {
+    return picture_ms_;
+  }
 
  private:
-  struct FrameJob {
-    FrameRequest request;
-    std::promise<TimedImages> done;
+  using PictureRequest = std::variant<FrameRequest, SkyRequest>;
+  struct TimedPicture {
+    nav::Measurement picture;
+    const char* stage = "";  // key of picture_ms
+    double ms = 0.0;
   };
-  using Slot = std::variant<StreamItem, std::future<TimedImages>>;
+  struct PictureJob {
+    PictureRequest request;
+    std::promise<TimedPicture> done;
+  };
+  using Slot = std::variant<StreamItem, std::future<TimedPicture>>;
 
   void Simulate(nav::TimeNs duration);
   void TakePictures();
+  [[nodiscard]] TimedPicture Take(const PictureRequest& request,
+                                  std::optional<StereoCamera>& camera) const;
   [[nodiscard]] bool Push(const Simulator::Emission& emission);
 
   SimulatorOptions options_;
   RunKey key_;
   Simulator simulator_;
-  std::size_t frames_under_way_max_;
+  std::size_t pictures_under_way_max_;
 
   std::mutex mutex_;
-  std::condition_variable room_;   // for the simulator: a frame was handed over
+  std::condition_variable room_;   // for the simulator: a picture was handed over
   std::condition_variable job_;    // for the cameras: a picture is wanted
   std::condition_variable ready_;  // for Next(): something was pushed
   std::deque<Slot> slots_;
-  std::deque<FrameJob> jobs_;
-  std::size_t frames_under_way_ = 0;
+  std::deque<PictureJob> jobs_;
+  std::size_t pictures_under_way_ = 0;
   bool finished_ = false;   // the simulator has emitted everything
   bool abandoned_ = false;  // nobody will call Next() again
   std::exception_ptr failure_;
-  std::vector<double> render_ms_;
+  std::map<std::string, std::vector<double>> picture_ms_;
   std::vector<std::jthread> threads_;  // last: they end before what they use
 };
 

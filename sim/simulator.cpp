@@ -23,13 +23,16 @@ nav::TimeNs PeriodOf(double rate_hz) { return nav::FromSeconds(1.0 / rate_hz); }
 
 bool IsSampleRate(double rate_hz) {
   const nav::TimeNs period = PeriodOf(rate_hz);
-  return period > 0 && period % Car::kStep == 0;
+  return period > 0 && period % Vehicle::kStep == 0;
 }
 
 nav::Rig NominalRig(const SensorOptions& sensors) {
   nav::Rig rig;
   if (sensors.stereo) rig.stereo = NominalStereo(*sensors.stereo);
   if (sensors.polarimeter) rig.polarimeter = NominalPolarimeter(*sensors.polarimeter);
+  if (sensors.polarization_camera) {
+    rig.polarization_camera = NominalPolarizationCamera(*sensors.polarization_camera);
+  }
   if (sensors.imu) rig.imu = NominalImu(*sensors.imu);
   return rig;
 }
@@ -42,7 +45,7 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key) {
       std::make_unique<Terrain>(options.world.terrain, *track_, SeedOf(key, "world/terrain"));
   sky_ = std::make_unique<sky::WorldSky>(
       options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"));
-  car_ = std::make_unique<Car>(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
+  vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
   if (options.sensors.stereo) {
     scene_ = BuildPlaza(options.world.plaza, *track_, *terrain_, SeedOf(key, "world/plaza"));
   }
@@ -74,10 +77,14 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
     stereo_clock_ = ClockOf(sensors.stereo->rate_hz);
     true_stereo_ = DrawTrueStereo(*sensors.stereo, key.seed, key.trial);
   }
+  if (sensors.polarization_camera) {
+    polarization_camera_clock_ = ClockOf(sensors.polarization_camera->rate_hz);
+    polarization_camera_.emplace(*sensors.polarization_camera, *sky_, key.seed, key.trial);
+  }
 }
 
 std::vector<Simulator::Emission> Simulator::Step() {
-  const Truth& now = car_->truth();
+  const Truth& now = vehicle_->truth();
   std::vector<Emission> due;
   if (truth_clock_.Due(now.stamp)) {
     due.emplace_back(now);
@@ -100,7 +107,10 @@ std::vector<Simulator::Emission> Simulator::Step() {
   if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
     due.emplace_back(FrameRequest{now.stamp, stereo_clock_.index++, now.T_WB});
   }
-  car_->Step();
+  if (polarization_camera_ && polarization_camera_clock_.Due(now.stamp)) {
+    due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++});
+  }
+  vehicle_->Step();
   return due;
 }
 

@@ -1,8 +1,9 @@
 // What does the vehicle feel, second by second?
 //
 // Owns the clock and the seed: builds the world, steps the vehicle, and samples every sensor that
-// the vehicle carries at its own rate. Pictures are only asked for here (FrameRequest) and taken by
-// whoever has a camera (measurement_stream.h), since they cost a thousand times more than the rest.
+// the vehicle carries at its own rate. Pictures are only asked for here (FrameRequest, SkyRequest)
+// and taken by whoever has time (measurement_stream.h): they cost a thousand times more than the
+// rest.
 // (options, seed, trial) fixes every byte; leaving a sensor out leaves the others as they are.
 #pragma once
 
@@ -16,10 +17,11 @@
 #include "nav/api/measurements.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/polarimeter.h"
+#include "sim/sensors/polarization_camera.h"
 #include "sim/sensors/reference.h"
 #include "sim/sensors/stereo_camera.h"
 #include "sim/truth.h"
-#include "sim/vehicle/car.h"
+#include "sim/vehicle/vehicle.h"
 #include "sim/world/plaza.h"
 #include "sim/world/terrain.h"
 #include "sim/world/track.h"
@@ -46,6 +48,7 @@ struct SensorOptions {
   std::optional<StereoCameraOptions> stereo;
   std::optional<ImuOptions> imu;
   std::optional<PolarimeterOptions> polarimeter;
+  std::optional<PolarizationCameraOptions> polarization_camera;
   std::optional<ReferenceOptions> reference;
 
   template <typename Visitor>
@@ -53,6 +56,7 @@ struct SensorOptions {
     v("stereo", stereo);
     v("imu", imu);
     v("polarimeter", polarimeter);
+    v("polarization_camera", polarization_camera);
     v("reference", reference);
   }
 };
@@ -61,7 +65,7 @@ struct SimulatorOptions {
   sky::SiteOptions site;
   sky::SkyOptions sky;
   WorldOptions world;
-  CarOptions vehicle;
+  VehicleOptions vehicle;
   SensorOptions sensors;
 };
 
@@ -71,11 +75,17 @@ struct RunKey {
   std::uint64_t trial = 0;
 };
 
-// A picture to be taken: everything it depends on besides the world.
+// A picture pair to be taken: everything it depends on besides the world.
 struct FrameRequest {
   nav::TimeNs stamp = 0;
   std::uint64_t index = 0;
   nav::Pose T_WB;
+};
+
+// A picture of the sky to be taken.
+struct SkyRequest {
+  Truth truth;
+  std::uint64_t index = 0;
 };
 
 // True: a sensor of this rate can be sampled at whole physics steps.
@@ -90,18 +100,22 @@ class Simulator {
   Simulator(const SimulatorOptions& options, const RunKey& key);
 
   using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
-                                FrameRequest>;
+                                FrameRequest, SkyRequest>;
 
   // What falls due at the current instant, in a fixed order, the truth (at the cameras' rate, or
   // 10 Hz without cameras) first; then one physics step. The first call is at time zero.
   [[nodiscard]] std::vector<Emission> Step();
 
-  [[nodiscard]] const Truth& truth() const { return car_->truth(); }
+  [[nodiscard]] const Truth& truth() const { return vehicle_->truth(); }
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const sky::WorldSky& sky() const { return *sky_; }
   // Only for taking pictures: the cameras as they really are. Absent without cameras.
   [[nodiscard]] const std::optional<nav::StereoCalibration>& true_stereo() const {
     return true_stereo_;
+  }
+  // Only for taking pictures, from any thread. Absent without one.
+  [[nodiscard]] const std::optional<PolarizationCamera>& polarization_camera() const {
+    return polarization_camera_;
   }
 
  private:
@@ -121,17 +135,19 @@ class Simulator {
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<sky::WorldSky> sky_;
   Scene scene_;
-  std::unique_ptr<Car> car_;
+  std::optional<Vehicle> vehicle_;
 
   Clock truth_clock_;
   Clock imu_clock_;
   Clock polarimeter_clock_;
   Clock reference_clock_;
   Clock stereo_clock_;
+  Clock polarization_camera_clock_;
   std::optional<Imu> imu_;
   std::optional<Polarimeter> polarimeter_;
   std::optional<Reference> reference_;
   std::optional<nav::StereoCalibration> true_stereo_;
+  std::optional<PolarizationCamera> polarization_camera_;
   Truth imu_interval_begin_;
 };
 

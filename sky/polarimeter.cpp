@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sky/stokes_axes.h"
+
 namespace polnav::sky {
 
 namespace {
@@ -17,21 +19,12 @@ constexpr int kAzimuths = 12;
 
 // Stokes parameters [I, Q, U] of one ray, about the axes of S carried to the ray.
 Eigen::Vector3d LookFrom(const Eigen::Quaterniond& q_WS, const Eigen::Vector3d& ray_S,
-                         const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
+                         const Eigen::Vector3d& observer_W, const SkyInstant& sky) {
   const Eigen::Quaterniond q_SP =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray_S);
   const Eigen::Quaterniond q_WP = q_WS * q_SP;
-  const Eigen::Vector3d x_W = q_WP * Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d y_W = q_WP * Eigen::Vector3d::UnitY();
-  const Skylight light = sky.Look((q_WP * Eigen::Vector3d::UnitZ()).normalized(), observer_W, t_s);
-  // The E-vector is an axis: its tensor q (a1 a1 - a2 a2) + u (a1 a2 + a2 a1), read along x and y.
-  const double x1 = x_W.dot(light.axis1_W);
-  const double x2 = x_W.dot(light.axis2_W);
-  const double y1 = y_W.dot(light.axis1_W);
-  const double y2 = y_W.dot(light.axis2_W);
-  const double q = light.q * (x1 * x1 - x2 * x2) + 2.0 * light.u * x1 * x2;
-  const double u = light.q * (x1 * y1 - x2 * y2) + light.u * (x1 * y2 + x2 * y1);
-  return light.radiance * Eigen::Vector3d(1.0, q, u);
+  const Skylight light = sky.Look((q_WP * Eigen::Vector3d::UnitZ()).normalized(), observer_W);
+  return StokesAbout(q_WP * Eigen::Vector3d::UnitX(), q_WP * Eigen::Vector3d::UnitY(), light);
 }
 
 }  // namespace
@@ -42,6 +35,7 @@ ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
     throw std::logic_error("AverageOverCone: the cone is not between 0 and pi wide");
   }
   const double depth = 1.0 - std::cos(0.5 * fov_rad);  // of the cap on the unit sphere
+  const SkyInstant now = sky.At(t_s);
   Eigen::Vector3d stokes = Eigen::Vector3d::Zero();
   for (std::size_t ring = 0; ring < kNodes.size(); ++ring) {
     const double cosine = 1.0 - depth * kNodes[ring];  // equal steps of it are equal solid angles
@@ -49,7 +43,7 @@ ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
     for (int k = 0; k < kAzimuths; ++k) {
       const double azimuth = 2.0 * pi * k / kAzimuths;
       const Eigen::Vector3d ray_S(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
-      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, t_s, sky);
+      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, now);
     }
   }
   return {stokes[0], stokes[1] / stokes[0], stokes[2] / stokes[0]};

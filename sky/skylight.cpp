@@ -1,106 +1,83 @@
 #include "sky/skylight.h"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <stdexcept>
 
+#include "sky/ray_axes.h"
 #include "sky/sun.h"
 
 namespace polnav::sky {
 
 namespace {
 
-using std::numbers::pi;
-
-constexpr double kDegree = pi / 180.0;
-// Light scattered many times keeps this share of the polarization of the sky about it.
-constexpr double kCloudPolarization = 0.4;
-// A thin cloud is somewhat brighter than the blue that it veils.
-constexpr double kCloudBrightening = 0.8;
-
-// Horizontal unit vector below a direction; north below the zenith.
-Eigen::Vector3d Horizontal(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d flat(direction.x(), direction.y(), 0.0);
-  const double length = flat.norm();
-  return length > 1e-12 ? Eigen::Vector3d(flat / length) : Eigen::Vector3d::UnitY();
+// A ray below the horizon, raised to it.
+Eigen::Vector3d AboveHorizon(const Eigen::Vector3d& ray_W) {
+  if (std::abs(ray_W.squaredNorm() - 1.0) > 1e-6) {
+    throw std::logic_error("WorldSky: the ray is no unit vector");
+  }
+  if (ray_W.z() >= 0.0) return ray_W;
+  const double flat = ray_W.head<2>().norm();
+  if (flat < 1e-12) return Eigen::Vector3d::UnitY();
+  return {ray_W.x() / flat, ray_W.y() / flat, 0.0};
 }
 
-// The direction turned by an angle towards the zenith, in its vertical plane.
-Eigen::Vector3d Raised(const Eigen::Vector3d& direction, double angle) {
-  const Eigen::Vector3d along = Horizontal(direction);
-  const double elevation = std::atan2(direction.z(), direction.head<2>().norm()) + angle;
-  return std::cos(elevation) * along + std::sin(elevation) * Eigen::Vector3d::UnitZ();
-}
-
-// CIE standard general sky, type 12 (clear, low turbidity) [CIE S 011, ISO 15469]. Gradation with
-// the zenith angle times indicatrix of the angle from the sun.
-double Gradation(double cos_zenith) { return 1.0 - std::exp(-0.32 / std::max(cos_zenith, 1e-6)); }
-double Indicatrix(double angle) {
-  const double cosine = std::cos(angle);
-  return 1.0 + 10.0 * (std::exp(-3.0 * angle) - std::exp(-1.5 * pi)) + 0.45 * cosine * cosine;
-}
-double ClearRadiance(const Eigen::Vector3d& ray, const Eigen::Vector3d& sun) {
-  const double from_sun = std::atan2(ray.cross(sun).norm(), ray.dot(sun));
-  const double sun_from_zenith = std::acos(std::clamp(sun.z(), -1.0, 1.0));
-  return Indicatrix(from_sun) * Gradation(ray.z()) / (Indicatrix(sun_from_zenith) * Gradation(1.0));
+Eigen::Vector2d WindOf(const SkyOptions& options) {
+  const double to_rad = options.wind_to_deg * std::numbers::pi / 180.0;
+  return options.wind_m_s * DirectionEnu(to_rad, 0.0).head<2>();
 }
 
 }  // namespace
 
-WorldSky::WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed)
-    : sun_(sun), max_dop_(options.max_dop) {
-  if (std::abs(sun.start_W.squaredNorm() - 1.0) > 1e-6) {
-    throw std::logic_error("WorldSky: the sun's direction is no unit vector");
-  }
-  if (options.model != "rayleigh" && options.model != "berry") {
-    throw std::invalid_argument("sky model '" + options.model + "': known are rayleigh, berry");
-  }
-  if (options.model == "berry") {
-    half_split_rad_ = 0.5 * options.neutral_point_separation_deg * kDegree;
-  }
-  clouds_.cover = options.thin_cloud_cover;
-  clouds_.scale_m = options.thin_cloud_scale_m;
-  clouds_.altitude_m = options.thin_cloud_altitude_m;
-  clouds_.wind_m_s = options.wind_m_s * DirectionEnu(options.wind_to_deg * kDegree, 0.0).head<2>();
-  clouds_.seed = seed;
+CloudWeather WeatherOf(const SkyOptions& options) {
+  CloudWeather weather = WeatherOf(options.clouds);
+  weather.cover = options.cloud_cover.value_or(weather.cover);
+  weather.optical_depth = options.cloud_optical_depth.value_or(weather.optical_depth);
+  weather.scale_m = options.cloud_scale_m.value_or(weather.scale_m);
+  weather.altitude_m = options.cloud_altitude_m.value_or(weather.altitude_m);
+  weather.veil = options.thin_cloud_cover.value_or(weather.veil);
+  return weather;
 }
 
-Skylight WorldSky::Look(const Eigen::Vector3d& ray_W, const Eigen::Vector3d& observer_W,
-                        double t_s) const {
-  if (std::abs(ray_W.squaredNorm() - 1.0) > 1e-6) {
-    throw std::logic_error("WorldSky::Look: the ray is no unit vector");
-  }
-  const Eigen::Vector3d along = Horizontal(ray_W);
-  const Eigen::Vector3d ray = ray_W.z() >= 0.0 ? ray_W : along;
+WorldSky::WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed)
+    : sun_(sun), clear_(options.clear), clouds_(WeatherOf(options), WindOf(options), seed) {
+  static_cast<void>(ClearSky(clear_, sun.start_W));  // complains of a bad model or sun at once
+}
 
-  Skylight light;
-  light.axis1_W = ray.z() * along - ray.head<2>().norm() * Eigen::Vector3d::UnitZ();
-  light.axis2_W = Eigen::Vector3d(along.y(), -along.x(), 0.0);
+Skylight SkyInstant::Look(const Eigen::Vector3d& ray_W, const Eigen::Vector3d& observer_W) const {
+  const RayAxes axes = AxesOf(AboveHorizon(ray_W));
+  const SkyStokes<double> clear = clear_.Look(axes);
+  Skylight light{.radiance = clear.radiance,
+                 .q = clear.q,
+                 .u = clear.u,
+                 .axis1_W = axes.axis1_W,
+                 .axis2_W = axes.axis2_W};
+  if (clouds_->empty()) return light;
 
-  // [Berry2004] without its stereographic coordinates: the complex w, whose phase is twice the
-  // E-vector's angle, is the product of the two neutral points' projections, each turned by a right
-  // angle. Its zeros are the points and their antipodes; |w| = sin sin becomes Rayleigh's sin^2
-  // when they meet, and |w| / (2 - |w|) Rayleigh's degree of polarization.
-  const auto project = [&light](const Eigen::Vector3d& point_W) {
-    return std::complex<double>(point_W.dot(light.axis1_W), point_W.dot(light.axis2_W));
-  };
-  const Eigen::Vector3d sun = sun_W(t_s);
-  const Eigen::Vector3d babinet_W = Raised(sun, half_split_rad_);
-  const Eigen::Vector3d brewster_W = Raised(sun, -half_split_rad_);
-  const std::complex<double> w = -project(babinet_W) * project(brewster_W);
-  const std::complex<double> clear = max_dop_ * w / (2.0 - std::abs(w));
-
-  const CloudLight cloud = LookAtClouds(clouds_, ray, observer_W, t_s);
-  const std::complex<double> mixed =
-      clear *
-      ((1.0 - cloud.share) + cloud.share * std::polar(kCloudPolarization, 2.0 * cloud.turn_rad));
+  const CloudColumn column = clouds_->Look(axes.ray_W, observer_W, t_s_);
+  const double air = column.transmittance * clear.radiance * column.air_light;
+  const double cloud =
+      (1.0 - column.transmittance) *
+      CloudRadiance(column.optical_depth, axes.ray_W.dot(clear_.sun_W()), axes.ray_W.z());
+  light.radiance = column.transmittance * clear.radiance + air + cloud;
+  // As shares of the radiance, so that where neither is the clear sky's numbers stay as they are.
+  const double air_share = air / light.radiance;
+  const double cloud_share = cloud / light.radiance;
+  const Eigen::Vector3d lit_from(column.air_lit_from.x(), column.air_lit_from.y(), 0.0);
+  const std::complex<double> towards(lit_from.dot(axes.axis1_W), lit_from.dot(axes.axis2_W));
+  const std::complex<double> p(clear.q, clear.u);
+  const std::complex<double> mixed = p * (1.0 - air_share - cloud_share) +
+                                     air_share * AirPolarization(towards) +
+                                     cloud_share * column.kept * p;
   light.q = mixed.real();
   light.u = mixed.imag();
-  light.radiance = ClearRadiance(ray, sun) * (1.0 + kCloudBrightening * cloud.share);
   return light;
+}
+
+double SkyInstant::Transmittance(const Eigen::Vector3d& ray_W,
+                                 const Eigen::Vector3d& observer_W) const {
+  return clouds_->Look(AboveHorizon(ray_W), observer_W, t_s_).transmittance;
 }
 
 }  // namespace polnav::sky

@@ -55,24 +55,35 @@ EarthState EarthAt(double tdb1, double tdb2) {
   return {p, v, p - from_sun};
 }
 
-// Unit vector of the sun's apparent topocentric place, in the intermediate system of date (CIRS).
-// Light time, annual and diurnal aberration and diurnal parallax are in it.
-Eigen::Vector3d ApparentSunCirs(const Site& site, const Instant& t, double rotation_rad) {
-  RowMatrix3d cirs_from_gcrs;
+// About the geocentre, along BCRS axes.
+struct Observer {
+  Eigen::Vector3d p_au = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_au_d = Eigen::Vector3d::Zero();
+};
+
+RowMatrix3d CirsFromGcrs(const Instant& t) {
   double matrix[3][3];
   eraC2i06a(t.tt1, t.tt2, matrix);
-  cirs_from_gcrs = Eigen::Map<const RowMatrix3d>(&matrix[0][0]);
+  return Eigen::Map<const RowMatrix3d>(&matrix[0][0]);
+}
 
+Observer ObserverAt(const Site& site, const RowMatrix3d& cirs_from_gcrs, double rotation_rad) {
   double observer[2][3];  // about the geocentre, CIRS axes [m, m/s]
   eraPvtob(site.longitude_rad, site.latitude_rad, site.altitude_m, 0.0, 0.0, 0.0, rotation_rad,
            observer);
+  const Eigen::Map<const Eigen::Vector3d> p(observer[0]);
+  const Eigen::Map<const Eigen::Vector3d> v(observer[1]);
+  return {cirs_from_gcrs.transpose() * p / kMetresPerAu,
+          cirs_from_gcrs.transpose() * v * (ERFA_DAYSEC / kMetresPerAu)};
+}
+
+// Unit vector of the sun's apparent place, in the intermediate system of date (CIRS). Light time,
+// annual aberration and the observer's parallax and diurnal aberration are in it.
+Eigen::Vector3d ApparentSunCirs(const Observer& observer, const Instant& t,
+                                const RowMatrix3d& cirs_from_gcrs) {
   const EarthState earth = EarthAt(t.tt1, t.tt2);
-  const Eigen::Vector3d eye_au = earth.p_au + cirs_from_gcrs.transpose() *
-                                                  Eigen::Map<const Eigen::Vector3d>(observer[0]) /
-                                                  kMetresPerAu;
-  const Eigen::Vector3d v_au_d = earth.v_au_d + cirs_from_gcrs.transpose() *
-                                                    Eigen::Map<const Eigen::Vector3d>(observer[1]) *
-                                                    (ERFA_DAYSEC / kMetresPerAu);
+  const Eigen::Vector3d eye_au = earth.p_au + observer.p_au;
+  const Eigen::Vector3d v_au_d = earth.v_au_d + observer.v_au_d;
 
   // The sun moves 13 m/s about the barycentre: one light-time step is plenty.
   const double light_days = (earth.sun_au - eye_au).norm() * kLightDaysPerAu;
@@ -184,10 +195,13 @@ Site SiteOf(const SiteOptions& options) {
 SunPosition ComputeSun(const Site& site, const UtcDate& utc, const Air& air, double delta_ut1_s) {
   const Instant t = InstantOf(utc, delta_ut1_s);
   const double rotation_rad = eraEra00(t.ut1, t.ut2);
-  const Eigen::Vector3d sun_cirs = ApparentSunCirs(site, t, rotation_rad);
+  const RowMatrix3d cirs_from_gcrs = CirsFromGcrs(t);
+  const Eigen::Vector3d sun_cirs =
+      ApparentSunCirs(ObserverAt(site, cirs_from_gcrs, rotation_rad), t, cirs_from_gcrs);
+  const double meridian_rad = rotation_rad + site.longitude_rad;
   // x: where the local meridian meets the equator, y: east, z: pole.
   const Eigen::Vector3d local =
-      Eigen::AngleAxisd(-(rotation_rad + site.longitude_rad), Eigen::Vector3d::UnitZ()) * sun_cirs;
+      Eigen::AngleAxisd(-meridian_rad, Eigen::Vector3d::UnitZ()) * sun_cirs;
   const double sin_lat = std::sin(site.latitude_rad);
   const double cos_lat = std::cos(site.latitude_rad);
   const double east = local.y();
@@ -198,6 +212,12 @@ SunPosition ComputeSun(const Site& site, const UtcDate& utc, const Air& air, dou
   sun.azimuth_rad = eraAnp(std::atan2(east, north));
   sun.geometric_elevation_rad = std::atan2(up, std::hypot(east, north));
   sun.elevation_rad = sun.geometric_elevation_rad + Refraction(sun.geometric_elevation_rad, air);
+
+  const Eigen::Vector3d geocentric = ApparentSunCirs({}, t, cirs_from_gcrs);
+  const double intermediate_ra_rad = std::atan2(geocentric.y(), geocentric.x());
+  sun.right_ascension_rad = eraAnp(intermediate_ra_rad - eraEo06a(t.tt1, t.tt2));
+  sun.declination_rad = std::asin(std::clamp(geocentric.z(), -1.0, 1.0));
+  sun.hour_angle_rad = eraAnp(meridian_rad - intermediate_ra_rad);
   return sun;
 }
 

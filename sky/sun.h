@@ -48,6 +48,11 @@ struct SunPosition {
   double azimuth_rad = 0.0;              // compass: from north, clockwise, [0, 2 pi)
   double elevation_rad = 0.0;            // apparent: with refraction
   double geometric_elevation_rad = 0.0;  // without
+
+  // As almanacs have it: apparent, seen from the centre of the earth.
+  double right_ascension_rad = 0.0;  // from the true equinox of date, [0, 2 pi)
+  double declination_rad = 0.0;
+  double hour_angle_rad = 0.0;  // from the site's meridian, westward, [0, 2 pi)
 };
 
 struct Site {

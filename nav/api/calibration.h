@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "nav/api/geometry.h"
+#include "nav/api/lens.h"
 
 namespace polnav::nav {
 
@@ -34,6 +35,27 @@ struct PolarimeterCalibration {
   double fov_rad = 0.0;  // full cone
 };
 
+// An imaging polarimeter: four polarizers over every 2x2 cell of pixels. S as in nav/api/lens.h.
+// The four are counted row by row from the top left pixel.
+struct PolarizationCameraCalibration {
+  int width_px = 0;
+  int height_px = 0;
+  int bits = 8;  // what full scale means: 2^bits - 1
+  Lens lens;
+  Pose T_BS;
+  std::array<double, 4> polarizer_rad{};  // from S's x towards its y
+  std::array<double, 4> gain = {1.0, 1.0, 1.0, 1.0};
+  std::array<double, 4> offset{};  // dark reading over full scale [-]
+  double full_well_e = 10500.0;    // electrons at full scale: shot noise
+  double read_noise_e = 2.5;
+  // How far the values above may be off: one sigma.
+  double gain_sigma = 0.0;    // of each gain [-]
+  double offset_sigma = 0.0;  // of each dark reading, over full scale [-]
+  double polarizer_sigma_rad = 0.0;
+  double mount_sigma_rad = 0.0;  // of T_BS, about each axis
+  double center_sigma_px = 0.0;  // of where the optical axis meets the sensor, along each side
+};
+
 struct ImuCalibration {
   Pose T_BI;
   double rate_hz = 0.0;
@@ -46,6 +68,7 @@ struct ImuCalibration {
 struct Rig {
   std::optional<StereoCalibration> stereo;
   std::optional<PolarimeterCalibration> polarimeter;
+  std::optional<PolarizationCameraCalibration> polarization_camera;
   std::optional<ImuCalibration> imu;
 };
 

@@ -20,8 +20,8 @@ constexpr double kGroundReflectance = 0.2;
 // The sun's own glow is counted with the sun; what a patch near it may add is bounded.
 constexpr double kBrightestPatch = 6.0;
 
-double Radiance(const sky::WorldSky& sky, const Eigen::Vector3d& direction_W) {
-  return sky.Look(direction_W, Eigen::Vector3d::Zero(), 0.0).radiance;
+double Radiance(const sky::SkyInstant& sky, const Eigen::Vector3d& direction_W) {
+  return sky.Look(direction_W, Eigen::Vector3d::Zero()).radiance;
 }
 
 // Forward scattering by haze around the sun, and the disc itself; both mostly saturate.
@@ -36,6 +36,7 @@ double Aureole(double angle_rad) {
 Lighting::Lighting(const sky::WorldSky& sky) : sun_W_(sky.sun_W()) {
   constexpr int kRings = 8;
   constexpr int kSectors = 16;
+  const sky::SkyInstant at_start = sky.At(0.0);
   double on_the_level = 0.0;
   for (int ring = 0; ring < kRings; ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) {
@@ -44,7 +45,7 @@ Lighting::Lighting(const sky::WorldSky& sky) : sun_W_(sky.sun_W()) {
       const double azimuth = 2.0 * pi * (sector + 0.5 * (ring % 2)) / kSectors;
       const double r = std::sqrt(1.0 - z * z);
       const Eigen::Vector3d direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
-      const double radiance = std::min(Radiance(sky, direction), kBrightestPatch);
+      const double radiance = std::min(Radiance(at_start, direction), kBrightestPatch);
       patches_.push_back({direction, radiance * 2.0 / (kRings * kSectors)});
       on_the_level += patches_.back().weight * z;
     }
@@ -69,6 +70,7 @@ SkyDome BuildSkyDome(const sky::WorldSky& sky) {
                                      121.0, 130.0, 139.0, 148.0, 158.0, 168.0, 179.999};
   const Eigen::Quaterniond q_WN =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sky.sun_W());
+  const sky::SkyInstant at_start = sky.At(0.0);
   SkyDome dome;
   for (const double ring_deg : kRings_deg) {
     const double angle = nav::DegToRad(ring_deg);
@@ -77,7 +79,7 @@ SkyDome BuildSkyDome(const sky::WorldSky& sky) {
       const Eigen::Vector3d direction =
           q_WN * Eigen::Vector3d(std::sin(angle) * std::cos(around),
                                  std::sin(angle) * std::sin(around), std::cos(angle));
-      const double radiance = Radiance(sky, direction) + Aureole(angle);
+      const double radiance = Radiance(at_start, direction) + Aureole(angle);
       dome.vertices.push_back({direction.cast<float>(), static_cast<float>(radiance)});
     }
   }

@@ -20,7 +20,10 @@ const std::vector<Rule>& Rules() {
       {"sky/", {"Eigen/", "erfa", "sky/"}, {}},
       {"nav/api/", {"Eigen/", "opencv2/core", "nav/api/"}, {}},
       // An estimator that knew the simulated sky would invert its own simulator.
-      {"nav/", {"Eigen/", "opencv2/", "ceres/", "fmt/", "nav/", "sky/"}, {"sky/skylight.h"}},
+      {"nav/",
+       {"Eigen/", "opencv2/", "ceres/", "fmt/", "nav/", "sky/"},
+       {"sky/skylight.h", "sky/clear_sky.h", "sky/berry.h", "sky/haz", "sky/sky_batch.h",
+        "sky/neutral_points.h", "sky/clouds.h", "sky/lattice_noise.h", "sky/stokes_axes.h"}},
       {"sim/vehicle/",
        {"Eigen/", "fmt/", "nav/api/", "sky/", "sim/", "bt", "Bullet"},
        {"sim/render/"}},

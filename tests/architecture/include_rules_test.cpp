@@ -32,6 +32,8 @@ TEST(IncludeRules, FindAPlantedViolation) {
   EXPECT_EQ(Broken("nav/stereo/planted.h", "  #  include \"sim/truth.h\""), 1U);
   EXPECT_EQ(Broken("nav/stereo/planted.h", "#include \"sky/rayleigh.h\""), 0U);
   EXPECT_EQ(Broken("nav/polarization/planted.h", "#include \"sky/skylight.h\""), 1U);
+  EXPECT_EQ(Broken("nav/polarization/planted.h", "#include \"sky/hazy.h\""), 1U);
+  EXPECT_EQ(Broken("nav/polarization/planted.h", "#include \"sky/clouds.h\""), 1U);
   EXPECT_EQ(Broken("sky/planted.h", "#include \"nav/api/geometry.h\""), 1U);
   EXPECT_EQ(Broken("sky/planted.h", "#include <Eigen/Core>\n#include <cmath>"), 0U);
   EXPECT_EQ(Broken("nav/api/planted.h", "#include <opencv2/imgproc.hpp>"), 1U);

@@ -78,5 +78,29 @@ TEST(ClosedLoop, WithoutTheImuTheOtherStreamsAreUnchanged) {
   }
 }
 
+// Eleven pictures of a turning sky camera: every compass answers by itself, and answers a heading.
+TEST(ClosedLoop, CompassesReadTheSkyOnATurntable) {
+  const Scenario scenario =
+      LoadScenario(std::string(POLNAV_SOURCE_DIR) + "/scenarios/sky_few_clouds.yaml",
+                   {{"duration_s=20", "test"}});
+  const RunRecord record = RunClosedLoop(scenario, {.seed = 1}, {});
+  EXPECT_EQ(record.streams.at("polarization_camera").count, 11U);
+  ASSERT_EQ(record.estimators.size(), 3U);
+  for (const EstimatorRun& run : record.estimators) {
+    EXPECT_TRUE(run.heading_only);
+    EXPECT_EQ(run.counts.used + run.counts.unusable, 11U) << run.name;
+    EXPECT_EQ(run.counts.used, run.estimates.size()) << run.name;
+    if (run.name != "compass_stokes") continue;
+    EXPECT_EQ(run.estimates.size(), 11U);
+    for (const nav::Estimate& e : run.estimates) {
+      const auto truth = std::find_if(record.truth.begin(), record.truth.end(),
+                                      [&](const sim::Truth& t) { return t.stamp == e.stamp; });
+      const double error =
+          nav::WrapPi(nav::CompassHeading(e.T_WB.q) - nav::CompassHeading(truth->T_WB.q));
+      EXPECT_LT(std::abs(error), 5.0 * std::sqrt(e.covariance(5, 5)));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace polnav::testbed

@@ -21,6 +21,8 @@ SimulatorOptions SmallOptions() {
   options.sensors.imu = ImuOptions{};
   options.sensors.polarimeter = PolarimeterOptions{};
   options.sensors.reference = ReferenceOptions{};
+  options.sensors.polarization_camera =
+      PolarizationCameraOptions{.rate_hz = 2.0, .width_px = 64, .height_px = 48, .focal_px = 40.0};
   return options;
 }
 
@@ -43,6 +45,13 @@ struct Recorder {
         record["stereo"].insert(record["stereo"].end(), image.ptr(row),
                                 image.ptr(row) + image.cols);
       }
+    }
+  }
+  void operator()(const nav::PolarizationImage& m) const {
+    for (int row = 0; row < m.mosaic.rows; ++row) {
+      record["polarization_camera"].insert(record["polarization_camera"].end(),
+                                           m.mosaic.ptr<std::uint16_t>(row),
+                                           m.mosaic.ptr<std::uint16_t>(row) + m.mosaic.cols);
     }
   }
   void operator()(const nav::PolarizationSample& m) const {
@@ -86,6 +95,7 @@ TEST(Simulator, SamplesEverySensorAtItsRate) {
   EXPECT_EQ(record.at("polarimeter").size(), 6U * 21U);
   EXPECT_EQ(record.at("reference").size(), 6U * 101U);
   EXPECT_EQ(record.at("stereo").size(), 11U * 2U * 160U * 96U);
+  EXPECT_EQ(record.at("polarization_camera").size(), 3U * 64U * 48U);
 }
 
 TEST(Simulator, SameSeedSameBytesWithOneRenderThreadOrTwo) {
@@ -98,7 +108,7 @@ TEST(Simulator, EverySeedAndTrialIsAnotherRun) {
   const Record once = RecordRun(options, {1, 0}, 3.0);
   for (const RunKey& other : {RunKey{2, 0}, RunKey{1, 1}}) {
     const Record record = RecordRun(options, other, 3.0);
-    for (const char* stream : {"truth", "imu", "polarimeter", "reference"}) {
+    for (const char* stream : {"truth", "imu", "polarimeter", "polarization_camera", "reference"}) {
       EXPECT_NE(once.at(stream), record.at(stream)) << stream;
     }
   }
@@ -108,15 +118,28 @@ TEST(Simulator, LeavingASensorOutLeavesTheOthersAsTheyAre) {
   SimulatorOptions options = SmallOptions();
   options.sensors.imu.reset();
   options.sensors.reference.reset();
+  options.sensors.polarization_camera.reset();
   Record rest = OneSecond();
   rest.erase("imu");
   rest.erase("reference");
+  rest.erase("polarization_camera");
   EXPECT_EQ(rest, RecordRun(options, {1, 0}, 1.0));
 }
 
 TEST(Simulator, NobodyNeedsToReadAStreamToItsEnd) {
   MeasurementStream stream(SmallOptions(), {1, 0}, nav::FromSeconds(60.0), 2);
   EXPECT_TRUE(stream.Next());
+}
+
+TEST(Simulator, ATurntableCarriesTheSameSensors) {
+  SimulatorOptions options = SmallOptions();
+  options.sensors.stereo.reset();
+  options.vehicle.turntable = TurntableOptions{.dwell_s = 0.5};
+  const Record record = RecordRun(options, {1, 0}, 1.0);
+  EXPECT_EQ(record.at("imu").size(), 6U * 100U);
+  EXPECT_EQ(record.at("polarization_camera").size(), 3U * 64U * 48U);
+  options.vehicle.car = CarOptions{};
+  EXPECT_THROW(Simulator(options, {1, 0}), std::logic_error) << "two vehicles at once";
 }
 
 TEST(Simulator, ARateBetweenPhysicsStepsIsRefused) {

@@ -40,6 +40,18 @@ TEST(Report, ShowsThePaperBesideTheRun) {
   EXPECT_EQ(ExampleReport(without).find("Chu2021: "), std::string::npos);
 }
 
+TEST(Report, OfACompassSaysNothingOfPositions) {
+  const Scenario scenario = ParseScenario(ExampleScenarioYaml(), "s.yaml",
+                                          {{"paper=[Fan2020]", "test"}, {"criteria=[]", "test"}});
+  RunRecord record = ExampleRun(scenario, {.seed = 42}, nullptr);
+  for (EstimatorRun& run : record.estimators) run.heading_only = true;
+  const Json result = BuildResult(scenario, record, 42, "image");
+  const std::string html = HtmlReport({scenario, record, result, {}, "polnav run s.yaml"});
+  EXPECT_NE(html.find("Fan2020: RANSAC + TLS, few clouds"), std::string::npos);
+  EXPECT_EQ(html.find("Position error [m]"), std::string::npos);
+  EXPECT_EQ(html.find("id=\"trajectory\""), std::string::npos);
+}
+
 TEST(Report, EscapesTextFromOutside) {
   Scenario scenario = ParseScenario(ExampleScenarioYaml(), "s.yaml");
   scenario.name = "</script><script>alert(1)</script>";

@@ -38,6 +38,8 @@ TEST_F(ResultTest, CarriesWhatTheRunWas) {
 
 TEST_F(ResultTest, HasEveryMetricThatIsOffered) {
   for (const std::string& metric : AllMetrics()) {
+    const std::string estimator = EstimatorOfMetric(metric);
+    if (!estimator.empty() && !result_["estimators"].contains(estimator)) continue;
     EXPECT_TRUE(MetricAt(result_, metric).has_value()) << metric;
     EXPECT_TRUE(IsMetric(metric)) << metric;
   }
@@ -85,6 +87,21 @@ TEST_F(ResultTest, AnEstimatorThatNeverAnsweredFailsItsCriteria) {
       Judge({{.name = "a", .metric = "estimators.stereo.tracked_fraction", .at_least = 0.5}})[0]
           .verdict,
       Verdict::kFailed);
+}
+
+// A compass has no position: neither metrics nor criteria speak of one.
+TEST_F(ResultTest, ACompassIsScoredByItsHeadingAlone) {
+  EstimatorRun& compass = record_.estimators[0];
+  compass.heading_only = true;
+  compass.counts = {.used = 3, .unusable = 1};
+  result_ = BuildResult(scenario_, record_, 42, "image");
+  EXPECT_TRUE(MetricAt(result_, "estimators.stereo.heading_deg.rmse").has_value());
+  EXPECT_TRUE(MetricAt(result_, "estimators.stereo.nees.heading").has_value());
+  EXPECT_FALSE(MetricAt(result_, "estimators.stereo.position_m.rmse").has_value());
+  EXPECT_FALSE(MetricAt(result_, "estimators.stereo.ate_m.rmse").has_value());
+  EXPECT_EQ(result_["estimators"]["stereo"]["tracked_fraction"], 0.75) << "share answered";
+  EXPECT_TRUE(IsMetric("estimators.compass_stokes.heading_deg.rmse"));
+  EXPECT_FALSE(IsMetric("estimators.compass_stokes.position_m.rmse"));
 }
 
 TEST_F(ResultTest, CriteriaOfEstimatorsLeftOutAreSkipped) {

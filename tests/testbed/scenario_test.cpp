@@ -54,17 +54,22 @@ TEST(Scenario, RefusesAnEstimatorWithoutItsSensors) {
   EXPECT_EQ(ErrorWith("sensors.polarimeter=null"),
             "s.yaml:15: estimators.run: 'stereo_polarization' needs a polarimeter, but "
             "sensors.polarimeter is off");
+  EXPECT_EQ(ErrorWith("estimators.run=[compass_stokes]"),
+            "--set estimators.run=[compass_stokes]: estimators.run: 'compass_stokes' needs a sky "
+            "camera, but sensors.polarization_camera is off");
 }
 
 TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
   EXPECT_EQ(ErrorWith("estimators.run=[sterio]"),
             "--set estimators.run=[sterio]: estimators.run: 'sterio' is not one of: stereo, "
-            "stereo_polarization; did you mean 'stereo'?");
+            "stereo_polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
+            "compass_zenith; did you mean 'stereo'?");
   EXPECT_EQ(ErrorWith("estimators.run=[stereo, stereo]"),
             "--set estimators.run=[stereo, stereo]: estimators.run: 'stereo' is listed twice");
   EXPECT_EQ(ErrorWith("estimators.close_loops=[stereos]"),
             "--set estimators.close_loops=[stereos]: estimators.close_loops: 'stereos' is not one "
-            "of: stereo, stereo_polarization; did you mean 'stereo'?");
+            "of: stereo, stereo_polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
+            "compass_zenith; did you mean 'stereo'?");
 }
 
 TEST(Scenario, RefusesDurationsThatAreNotWholeMilliseconds) {
@@ -83,6 +88,11 @@ TEST(Scenario, RefusesWhatCannotBeSimulated) {
   EXPECT_EQ(ErrorWith("sensors.imu.rate_hz=333"),
             "--set sensors.imu.rate_hz=333: sensors.imu.rate_hz: 333 Hz does not fit whole steps "
             "of the simulation");
+  EXPECT_EQ(ErrorOf("name: a\nvehicle:\n  car: {}\n  turntable: {}\n"),
+            "s.yaml:2: vehicle: 'car' and 'turntable' exclude each other");
+  EXPECT_EQ(ErrorOf("name: a\nsensors:\n  polarization_camera:\n    layout: 0,45/90\n"),
+            "s.yaml:4: sensors.polarization_camera.layout: mosaic layout '0,45/90': expected each "
+            "of 0, 45, 90, 135 once, first row / second row, such as 90,45/135,0");
 }
 
 TEST(Scenario, RefusesCriteriaThatCannotBeJudged) {

@@ -21,9 +21,13 @@ std::string Joined(const std::vector<std::string>& arguments) {
   return line;
 }
 
+Json ScenarioSchema() { return OptionSchema<Scenario>(); }
+
 struct Parsed {
   RunArguments run;
   EvaluateArguments evaluate;
+  SkyArguments sky;
+  CompassArguments compass;
   bool print_options = false;
   bool schema = false;
 };
@@ -63,6 +67,68 @@ CLI::App* AddEvaluate(CLI::App& app, EvaluateArguments& a) {
   return evaluate;
 }
 
+CLI::App* AddSky(CLI::App& app, SkyArguments& a) {
+  CLI::App* sky = app.add_subcommand("sky", "The sun, and a clear sky's light and polarization");
+  sky->add_option("--lat", a.latitude_deg, "Latitude [deg], north positive");
+  sky->add_option("--lon", a.longitude_deg, "Longitude [deg], east positive");
+  sky->add_option("--utc", a.utc, "Time, such as 2020-11-11T07:00:00Z");
+  sky->add_option("--sun-elevation-deg", a.sun_elevation_deg, "In place of a place and a time");
+  sky->add_option("--sun-azimuth-deg", a.sun_azimuth_deg, "Compass azimuth, north is 0, east 90");
+  sky->add_option("--model", a.model, "How the sky scatters light")
+      ->check(CLI::IsMember({"rayleigh", "berry", "hazy"}))
+      ->capture_default_str();
+  sky->add_option("--aot", a.aot, "Aerosol optical thickness at 550 nm (berry, hazy)");
+  sky->add_option("--wavelength-nm", a.wavelength_nm, "400 to 700 (hazy)");
+  sky->add_option("--max-dop", a.max_dop, "Highest degree of polarization (rayleigh, berry)");
+  sky->add_option("--directions", a.directions, "CSV of azimuth_deg,elevation_deg to look along");
+  sky->add_option("--csv", a.csv, "Write azimuth_deg,elevation_deg,I,Q,U,dop,aop_deg");
+  sky->add_option("--png", a.png, "Draw angle, degree and radiance");
+  return sky;
+}
+
+CLI::App* AddCompass(CLI::App& app, CompassArguments& a) {
+  CLI::App* compass = app.add_subcommand("compass", "Headings from raw polarization images");
+  compass->add_option("IMAGE", a.images, "Raw mosaics (TIFF, PNG)")->required();
+  compass->add_option("--layout", a.layout, "Polarizers of a cell [deg]: first row/second row")
+      ->capture_default_str();
+  compass->add_option("--lens", a.lens, "How it maps")
+      ->check(CLI::IsMember({"pinhole", "equidistant"}))
+      ->capture_default_str();
+  compass->add_option("--focal-px", a.focal_px, "Focal length (default: the longer side)")
+      ->check(CLI::Range(1.0, 1e6));
+  compass->add_option("--center-px", a.center_px, "Optical axis: x,y (default: the middle)")
+      ->delimiter(',')
+      ->expected(2);
+  compass->add_option("--radius-px", a.radius_px, "Use only a disc around the centre")
+      ->check(CLI::Range(1.0, 1e6));
+  compass->add_option("--min-elevation-deg", a.min_elevation_deg, "Lowest rays that count")
+      ->check(CLI::Range(0.0, 80.0));
+  compass->add_option("--bits", a.bits, "Depth of 16-bit files (default: 12)")
+      ->check(CLI::Range(9, 16));
+  compass->add_option("--method", a.method, "How")
+      ->check(CLI::IsMember({"zenith", "lsq", "ransac_tls", "stokes"}))
+      ->capture_default_str();
+  compass->add_option("--sun-elevation-deg", a.sun_elevation_deg)->check(CLI::Range(-90.0, 90.0));
+  compass->add_option("--sun-azimuth-deg", a.sun_azimuth_deg, "Compass")
+      ->check(CLI::Range(-360.0, 360.0));
+  compass->add_option("--lat", a.lat_deg, "Latitude [deg]")->check(CLI::Range(-90.0, 90.0));
+  compass->add_option("--lon", a.lon_deg, "Longitude [deg]")->check(CLI::Range(-180.0, 180.0));
+  compass->add_option("--utc", a.utc, "YYYY-MM-DDTHH:MM:SSZ");
+  compass->add_option("--roll-deg", a.roll_deg, "Left side up is positive")
+      ->check(CLI::Range(-90.0, 90.0));
+  compass->add_option("--pitch-deg", a.pitch_deg, "Nose down is positive")
+      ->check(CLI::Range(-90.0, 90.0));
+  compass->add_option("--calibration", a.calibration, "Camera, from --calibrate (JSON)");
+  compass->add_option("--calibrate", a.calibrate, "Fit the camera to a turn; write it here");
+  compass->add_option("--headings-deg", a.headings_deg, "Of the turn's pictures: a,b,c")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  compass->add_option("--csv", a.csv, "Write the rows here");
+  compass->add_option("--png", a.png, "Write what was seen and used here");
+  compass->add_flag("--json", a.json, "Print JSON instead of CSV");
+  return compass;
+}
+
 int Dispatch(const std::vector<std::string>& arguments, const Console& console,
              const ClosedLoop& closed_loop) {
   CLI::App app("Polnav: simulation-in-the-loop testbed for polarized-light navigation", "polnav");
@@ -72,6 +138,8 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   app.require_subcommand(0, 1);
   const CLI::App* run = AddRun(app, parsed.run);
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
+  const CLI::App* sky = AddSky(app, parsed.sky);
+  const CLI::App* compass = AddCompass(app, parsed.compass);
   CLI::App* list = app.add_subcommand("list", "Scenarios, estimators and metrics that there are");
   list->add_flag("--schema", parsed.schema, "Print the JSON Schema of scenario files instead");
   try {
@@ -80,7 +148,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
     return app.exit(error, console.out, console.err) == 0 ? kExitHolds : kExitBadInput;
   }
   if (parsed.print_options) {
-    console.out << OptionListing(OptionSchema<Scenario>());
+    console.out << OptionListing(ScenarioSchema());
     return kExitHolds;
   }
   if (run->parsed()) {
@@ -88,10 +156,12 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
     return Run(parsed.run, console, closed_loop);
   }
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
+  if (sky->parsed()) return Sky(parsed.sky, console);
+  if (compass->parsed()) return CompassReadings(parsed.compass, console);
   if (list->parsed() && parsed.schema) {
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "Polnav scenario"}};
-    schema.update(OptionSchema<Scenario>());
+    schema.update(ScenarioSchema());
     console.out << schema.dump(2) << "\n";
     return kExitHolds;
   }

@@ -31,12 +31,60 @@ struct EvaluateArguments {
   bool json = false;
 };
 
+// The sun either by place and time or as it stands.
+struct SkyArguments {
+  std::optional<double> latitude_deg;
+  std::optional<double> longitude_deg;
+  std::optional<std::string> utc;
+  std::optional<double> sun_elevation_deg;
+  std::optional<double> sun_azimuth_deg;
+  std::string model = "hazy";
+  std::optional<double> aot;
+  std::optional<double> wavelength_nm;
+  std::optional<double> max_dop;
+  std::string directions;  // empty: the whole sky
+  std::string csv;
+  std::string png;
+};
+
+// Angles as typed; absent: not given.
+struct CompassArguments {
+  std::vector<std::string> images;
+  std::string layout = "90,45/135,0";
+  std::string lens = "pinhole";
+  std::optional<double> focal_px;  // absent: the longer side of the image
+  std::vector<double> center_px;   // x, y; empty: the middle
+  std::optional<double> radius_px;
+  std::optional<double> min_elevation_deg;
+  std::optional<int> bits;  // of 16-bit files; absent: 12
+  std::string method = "stokes";
+  std::optional<double> sun_elevation_deg;
+  std::optional<double> sun_azimuth_deg;
+  std::optional<double> lat_deg;
+  std::optional<double> lon_deg;
+  std::optional<std::string> utc;
+  double roll_deg = 0.0;
+  double pitch_deg = 0.0;
+  std::string calibration;           // file to read
+  std::string calibrate;             // file to write
+  std::vector<double> headings_deg;  // of the turn's pictures
+  std::string csv;
+  std::string png;
+  bool json = false;
+};
+
 // Simulate, estimate, score; write and print the results.
 [[nodiscard]] int Run(const RunArguments& arguments, const Console& console,
                       const ClosedLoop& closed_loop);
 
 // Compare two TUM files.
 [[nodiscard]] int Evaluate(const EvaluateArguments& arguments, const Console& console);
+
+// Where the sun is; the sky's light as a table, a picture or a summary.
+[[nodiscard]] int Sky(const SkyArguments& arguments, const Console& console);
+
+// Headings of raw polarization images, or a calibration from a turn of them.
+[[nodiscard]] int CompassReadings(const CompassArguments& arguments, const Console& console);
 
 // Scenarios, estimators, metrics.
 [[nodiscard]] int List(const Console& console);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 
 #include "tools/polnav/console.h"
 #include "tools/testbed/metrics.h"
@@ -19,17 +18,24 @@ std::string Number(const Json& tree, const std::string& path, int digits) {
 
 std::string Fixed(double value) { return fmt::format("{:.2f}", value); }
 
-// mean: the path of the mean magnitude, which papers call the mean error.
-void AddErrorRows(TextTable& table, const Json& result, const std::string& errors,
-                  const std::string& mean, std::span<const PaperRow> paper) {
+// One table of errors beside the paper's. mean: the path of the mean that is shown.
+std::string ErrorTable(const char* title, const Json& result, const std::string& errors,
+                       const std::string& mean, const PaperTable& paper) {
+  TextTable table({title, "max", "mean", "RMSE", "std"});
   for (const auto& [name, scores] : result["estimators"].items()) {
     table.Add({name, Number(scores, errors + ".max", 3), Number(scores, errors + "." + mean, 3),
                Number(scores, errors + ".rmse", 3), Number(scores, errors + ".std", 3)});
   }
-  for (const PaperRow& row : paper) {
-    table.Add({fmt::format("  {}: {}", kChu2021, row.label), Fixed(row.max), Fixed(row.mean),
-               Fixed(row.rmse), Fixed(row.std)});
+  for (const PaperRow& row : paper.rows) {
+    table.Add({fmt::format("  {}: {}", paper.paper, row.label), row.max ? Fixed(*row.max) : "-",
+               Fixed(row.mean), Fixed(row.rmse), Fixed(row.std)});
   }
+  return table.Text() + "\n";
+}
+
+bool AnyPosition(const Json& result) {
+  return std::any_of(result["estimators"].begin(), result["estimators"].end(),
+                     [](const Json& scores) { return MetricAt(scores, "position_m.rmse"); });
 }
 
 std::string VerdictText(Verdict verdict) {
@@ -49,25 +55,31 @@ std::string CriterionLine(const CriterionResult& c) {
                      c.actual ? fmt::format("{:.6g}", *c.actual) : "no value");
 }
 
-std::string ErrorTables(const Scenario& scenario, const Json& result) {
-  const bool chu =
-      std::find(scenario.paper.begin(), scenario.paper.end(), kChu2021) != scenario.paper.end();
-  std::span<const PaperRow> paper_heading;
-  std::span<const PaperRow> paper_position;
-  if (chu) {
-    paper_heading = kChu2021Heading_deg;
-    paper_position = kChu2021Position_m;
-  }
-  TextTable heading({"heading error [deg]", "max", "mean", "RMSE", "std"});
-  AddErrorRows(heading, result, "heading_deg", "mean_abs", paper_heading);
-  TextTable position({"position error [m]", "max", "mean", "RMSE", "std"});
-  AddErrorRows(position, result, "position_m", "mean", paper_position);
+std::string PositionTables(const Scenario& scenario, const Json& result) {
   TextTable other({"", "ATE rmse [m]", "RPE 1 m [m]", "drift [%]", "tracked"});
   for (const auto& [name, scores] : result["estimators"].items()) {
     other.Add({name, Number(scores, "ate_m.rmse", 3), Number(scores, "rpe_1m.trans_m.mean", 4),
                Number(scores, "drift_percent", 3), Number(scores, "tracked_fraction", 3)});
   }
-  return heading.Text() + "\n" + position.Text() + "\n" + other.Text() + "\n";
+  return ErrorTable("position error [m]", result, "position_m", "mean", PaperPositions(scenario)) +
+         other.Text() + "\n";
+}
+
+std::string CompassTable(const Json& result) {
+  TextTable table({"", "NEES (1)", "within 3 sigma", "answered"});
+  for (const auto& [name, scores] : result["estimators"].items()) {
+    table.Add({name, Number(scores, "nees.heading", 2),
+               Number(scores, "nees.heading_within_3_sigma", 3),
+               Number(scores, "tracked_fraction", 3)});
+  }
+  return table.Text() + "\n";
+}
+
+std::string ErrorTables(const Scenario& scenario, const Json& result) {
+  const PaperTable paper = PaperHeadings(scenario);
+  return ErrorTable("heading error [deg]", result, "heading_deg",
+                    paper.signed_mean ? "mean" : "mean_abs", paper) +
+         (AnyPosition(result) ? PositionTables(scenario, result) : CompassTable(result));
 }
 
 }  // namespace

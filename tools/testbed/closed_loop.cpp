@@ -7,10 +7,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "nav/stereo/estimator.h"
 #include "nav/stereo/tracker.h"
 #include "sim/measurement_stream.h"
 #include "sim/random.h"
+#include "tools/testbed/calibration_turn.h"
+#include "tools/testbed/estimators.h"
 #include "tools/testbed/memory_use.h"
 #include "tools/testbed/polarization_readings.h"
 #include "tools/testbed/stream_hash.h"
@@ -22,14 +23,6 @@ using Clock = std::chrono::steady_clock;
 
 double MsSince(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-// The estimators' sun: from the place and date they are told, not from the simulator.
-nav::SunModel SunFor(const sky::SiteOptions& site) {
-  const auto utc = sky::ParseUtc(site.utc);
-  if (!utc) throw std::logic_error("RunClosedLoop: site.utc is no date: " + site.utc);
-  const sky::SunArc arc = sky::ComputeSunArc(sky::SiteOf(site), *utc);
-  return [arc](nav::TimeNs stamp) { return arc.At(nav::ToSeconds(stamp)); };
 }
 
 // What the scenario grants: the true start, blurred by the sigmas that it states.
@@ -49,24 +42,8 @@ nav::StartPrior GrantStart(const StartOptions& start, const sim::Truth& truth,
 
 struct RunningEstimator {
   EstimatorRun run;
-  nav::StereoEstimator estimator;
+  AnyEstimator estimator;
 };
-
-bool ClosesLoops(const Scenario& scenario, const std::string& name) {
-  const auto& names = scenario.estimators.close_loops;
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-nav::StereoEstimator MakeEstimator(const std::string& name, const Scenario& scenario,
-                                   const nav::Rig& rig, const nav::StartPrior& start) {
-  std::optional<nav::HeadingFusion> polarization;
-  if (name == "stereo_polarization") {
-    polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),
-                         SunFor(scenario.site));
-  }
-  return {scenario.estimators.stereo, rig.stereo.value(), start, std::move(polarization),
-          ClosesLoops(scenario, name)};
-}
 
 // The corners that the front end follows.
 cv::Mat DrawFeatures(const cv::Mat& image, const std::vector<cv::Point2f>& points) {
@@ -78,12 +55,25 @@ cv::Mat DrawFeatures(const cv::Mat& image, const std::vector<cv::Point2f>& point
   return drawn;
 }
 
+// What the estimators are told about the sensors.
+nav::Rig RigFor(const Scenario& scenario, const RunOptions& options) {
+  nav::Rig rig = sim::NominalRig(scenario.sensors);
+  if (rig.polarization_camera && scenario.estimators.calibrate_sky_camera) {
+    const auto turn = TakeCalibrationTurn(*scenario.sensors.polarization_camera, scenario.sky,
+                                          options.seed, options.trial);
+    rig.polarization_camera =
+        nav::CalibrateFromTurn(scenario.estimators.compass, *rig.polarization_camera, turn)
+            .calibration;
+  }
+  return rig;
+}
+
 class Loop {
  public:
   Loop(const Scenario& scenario, const RunOptions& options)
       : scenario_(scenario),
         options_(options),
-        rig_(sim::NominalRig(scenario.sensors)),
+        rig_(RigFor(scenario, options)),
         duration_(nav::FromSeconds(scenario.duration_s)),
         readings_(rig_.polarimeter, SunFor(scenario.site)) {
     const auto& run = scenario.estimators.run;
@@ -106,7 +96,7 @@ class Loop {
         Take(std::get<nav::Measurement>(*item));
       }
     }
-    Finish(stream.render_ms());
+    Finish(stream.picture_ms());
     record_.wall_s = MsSince(begin) * 1e-3;
     return std::move(record_);
   }
@@ -125,7 +115,8 @@ class Loop {
   void StartEstimators(const sim::Truth& truth) {
     const nav::StartPrior start = GrantStart(scenario_.estimators.start, truth, options_);
     for (const std::string& name : scenario_.estimators.run) {
-      estimators_.push_back({{.name = name}, MakeEstimator(name, scenario_, rig_, start)});
+      estimators_.push_back({{.name = name, .heading_only = InfoOf(name).heading_only},
+                             MakeEstimator(name, scenario_, rig_, start)});
     }
   }
 
@@ -142,7 +133,15 @@ class Loop {
     if (const auto* light = std::get_if<nav::PolarizationSample>(&measurement)) {
       readings_.Add(*light);
     }
-    for (RunningEstimator& e : estimators_) Feed(measurement, e);
+    if (const auto* sky = std::get_if<nav::PolarizationImage>(&measurement)) KeepSkyImage(*sky);
+    for (RunningEstimator& e : estimators_) {
+      const auto estimator_begin = Clock::now();
+      Feed(measurement, e);
+      // Only pictures take a time worth a line in the report.
+      if (std::holds_alternative<nav::PolarizationImage>(measurement)) {
+        record_.timing[e.run.name].ms.push_back(MsSince(estimator_begin));
+      }
+    }
   }
 
   // The front end works once for all estimators: it does not depend on what they believe.
@@ -160,24 +159,39 @@ class Loop {
   }
 
   static void Feed(const nav::Measurement& measurement, RunningEstimator& e) {
-    const nav::Report report = e.estimator.Process(measurement);
+    const nav::Report report =
+        std::visit([&](auto& estimator) { return estimator.Process(measurement); }, e.estimator);
     e.run.counts.Add(report);
     if (report.estimate) e.run.estimates.push_back(*report.estimate);
   }
 
   // Four views spread over the run.
-  void KeepSampleImage(const nav::StereoImages& images) {
+  [[nodiscard]] bool IsSampleDue(nav::TimeNs stamp) const {
     constexpr nav::TimeNs kCount = 4;
     const auto kept = static_cast<nav::TimeNs>(record_.images.size());
-    if (kept >= kCount || images.stamp < duration_ * (2 * kept + 1) / (2 * kCount)) return;
+    return kept < kCount && stamp >= duration_ * (2 * kept + 1) / (2 * kCount);
+  }
+
+  void KeepSampleImage(const nav::StereoImages& images) {
+    if (!IsSampleDue(images.stamp)) return;
     record_.images.push_back({.title = "left camera and what the front end follows",
                               .stamp = images.stamp,
                               .image = DrawFeatures(images.left, tracker_->points_px())});
   }
 
-  void Finish(const std::vector<double>& render_ms) {
+  // Where there are cameras, theirs are the pictures to show.
+  void KeepSkyImage(const nav::PolarizationImage& sky) {
+    if (rig_.stereo || !IsSampleDue(sky.stamp)) return;
+    cv::Mat grey;
+    sky.mosaic.convertTo(grey, CV_8UC1,
+                         255.0 / (std::ldexp(1.0, rig_.polarization_camera->bits) - 1.0));
+    record_.images.push_back(
+        {.title = "mosaic of the sky camera", .stamp = sky.stamp, .image = grey});
+  }
+
+  void Finish(const std::map<std::string, std::vector<double>>& picture_ms) {
     for (auto& [name, hash] : hashes_) record_.streams[name].sha256 = hash.HexDigest();
-    if (!render_ms.empty()) record_.timing["render"].ms = render_ms;
+    for (const auto& [stage, ms] : picture_ms) record_.timing[stage].ms = ms;
     for (RunningEstimator& e : estimators_) {
       e.run.sha256 = HashOf(e.run.estimates);
       record_.estimators.push_back(std::move(e.run));

@@ -2,7 +2,13 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <variant>
+
+#include "nav/polarization/compass_estimator.h"
+#include "nav/stereo/estimator.h"
+#include "tools/testbed/scenario.h"
 
 namespace polnav::testbed {
 
@@ -11,17 +17,48 @@ struct EstimatorInfo {
   std::string_view description;
   bool needs_stereo = false;
   bool needs_polarimeter = false;
+  bool needs_polarization_camera = false;
+  bool heading_only = false;  // a compass
 };
 
-inline constexpr std::array<EstimatorInfo, 2> kEstimators{{
+inline constexpr std::array<EstimatorInfo, 6> kEstimators{{
     {.name = "stereo",
      .description = "stereo visual odometry in a sliding window, without the sky",
-     .needs_stereo = true,
-     .needs_polarimeter = false},
+     .needs_stereo = true},
     {.name = "stereo_polarization",
      .description = "stereo and polarized skylight, tightly coupled [Chu2021]",
      .needs_stereo = true,
      .needs_polarimeter = true},
+    {.name = "compass_lsq",
+     .description = "heading from sky images: least squares over all pixels, Fan2020's baseline",
+     .needs_polarization_camera = true,
+     .heading_only = true},
+    {.name = "compass_ransac_tls",
+     .description = "heading from sky images: RANSAC and total least squares [Fan2020]",
+     .needs_polarization_camera = true,
+     .heading_only = true},
+    {.name = "compass_stokes",
+     .description = "heading from sky images: Stokes parameters weighted by what they are worth",
+     .needs_polarization_camera = true,
+     .heading_only = true},
+    {.name = "compass_zenith",
+     .description = "heading from sky images: the middle of the picture as one reading",
+     .needs_polarization_camera = true,
+     .heading_only = true},
 }};
+
+// Throws std::logic_error when there is none of that name.
+[[nodiscard]] const EstimatorInfo& InfoOf(std::string_view name);
+
+using AnyEstimator = std::variant<nav::StereoEstimator, nav::CompassEstimator>;
+
+// The scenario names it and the rig carries what it needs.
+[[nodiscard]] AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario,
+                                         const nav::Rig& rig, const nav::StartPrior& start);
+
+[[nodiscard]] bool ClosesLoops(const Scenario& scenario, const std::string& name);
+
+// The estimators' sun: from the place and date they are told, not from the simulator.
+[[nodiscard]] nav::SunModel SunFor(const sky::SiteOptions& site);
 
 }  // namespace polnav::testbed

@@ -27,7 +27,9 @@ Json ToJson(const std::optional<RpeScore>& rpe) {
   return {{"trans_m", ToJson(rpe->trans_m)}, {"rot_deg", ToJson(rpe->rot_deg)}};
 }
 
+// Leaves out what is null.
 void Flatten(const Json& tree, const std::string& path, std::vector<std::string>& paths) {
+  if (tree.is_null()) return;
   if (!tree.is_object()) {
     paths.push_back(path);
     return;
@@ -53,26 +55,34 @@ Json ToJson(const EstimatorScore& score) {
   json["rpe_1m"] = ToJson(score.rpe_1m);
   json["rpe_100m"] = ToJson(score.rpe_100m);
   json["heading_deg"] = ToJson(score.heading_deg);
-  json["position_m"] = ToJson(score.position_m.error);
-  json["position_m"]["horizontal_rmse"] = score.position_m.horizontal_rmse;
+  json["position_m"] = nullptr;
+  if (score.position_m) {
+    json["position_m"] = ToJson(score.position_m->error);
+    json["position_m"]["horizontal_rmse"] = score.position_m->horizontal_rmse;
+  }
   json["drift_percent"] = score.drift_percent ? Json(*score.drift_percent) : Json(nullptr);
   json["nees"] = nullptr;
   if (score.nees) {
-    json["nees"] = {{"position", score.nees->position},
-                    {"heading", score.nees->heading},
-                    {"heading_within_3_sigma", score.nees->heading_within_3_sigma}};
+    json["nees"] = {
+        {"position", score.nees->position ? Json(*score.nees->position) : Json(nullptr)},
+        {"heading", score.nees->heading},
+        {"heading_within_3_sigma", score.nees->heading_within_3_sigma}};
   }
   json["tracked_fraction"] = score.tracked_fraction;
   return json;
 }
 
-std::vector<std::string> EstimatorMetrics() {
+std::vector<std::string> EstimatorMetrics(bool heading_only) {
   EstimatorScore full;
-  full.ate_m.emplace();
-  full.rpe_1m.emplace();
-  full.rpe_100m.emplace();
-  full.drift_percent.emplace();
   full.nees.emplace();
+  if (!heading_only) {
+    full.ate_m.emplace();
+    full.rpe_1m.emplace();
+    full.rpe_100m.emplace();
+    full.position_m.emplace();
+    full.drift_percent.emplace();
+    full.nees->position = 0.0;
+  }
   std::vector<std::string> paths;
   Flatten(ToJson(full), "", paths);
   return paths;
@@ -81,7 +91,7 @@ std::vector<std::string> EstimatorMetrics() {
 std::vector<std::string> AllMetrics() {
   std::vector<std::string> paths(kRunMetrics.begin(), kRunMetrics.end());
   for (const EstimatorInfo& info : kEstimators) {
-    for (const std::string& metric : EstimatorMetrics()) {
+    for (const std::string& metric : EstimatorMetrics(info.heading_only)) {
       paths.push_back("estimators." + std::string(info.name) + "." + metric);
     }
   }

@@ -16,7 +16,7 @@ namespace polnav::testbed {
 [[nodiscard]] Json ToJson(const EstimatorScore& score);
 
 // Of one estimator, without "estimators.<name>."; derived from ToJson(EstimatorScore).
-[[nodiscard]] std::vector<std::string> EstimatorMetrics();
+[[nodiscard]] std::vector<std::string> EstimatorMetrics(bool heading_only = false);
 
 // Of a run with every known estimator. Streams and stages are named by the run itself.
 [[nodiscard]] std::vector<std::string> AllMetrics();

@@ -150,7 +150,8 @@ template <typename T>
 }
 
 template <typename T>
-[[nodiscard]] Json OptionSchema(T options = {}) {
+[[nodiscard]] Json OptionSchema() {
+  T options;
   SchemaWriter writer;
   options.Visit(writer);
   return writer.Schema();

@@ -3,28 +3,53 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <span>
 #include <string_view>
+
+#include "tools/testbed/scenario.h"
 
 namespace polnav::testbed {
 
 struct PaperRow {
-  std::string_view estimator;  // the name of ours that it is to be compared with
   std::string_view label;
-  double max = 0.0;
-  double mean = 0.0;  // of the magnitude
+  std::optional<double> max;
+  double mean = 0.0;
   double rmse = 0.0;
   double std = 0.0;
+};
+
+// Rows to show beside ours, the method that the others are compared with first.
+struct PaperTable {
+  std::string_view paper;
+  bool signed_mean = false;  // the paper's mean is of the signed error, else of the magnitude
+  std::span<const PaperRow> rows;
 };
 
 // Car on a plaza loop, 5 laps of 377 m [Chu2021, tables of experiment B].
 inline constexpr std::string_view kChu2021 = "Chu2021";
 inline constexpr std::array<PaperRow, 2> kChu2021Heading_deg{{
-    {"stereo", "stereo SLAM", 21.58, 0.54, 1.48, 1.38},
-    {"stereo_polarization", "stereo + polarization", 8.11, 0.33, 0.67, 0.58},
+    {"stereo SLAM", 21.58, 0.54, 1.48, 1.38},
+    {"stereo + polarization", 8.11, 0.33, 0.67, 0.58},
 }};
 inline constexpr std::array<PaperRow, 2> kChu2021Position_m{{
-    {"stereo", "stereo SLAM", 5.12, 0.91, 0.99, 0.42},
-    {"stereo_polarization", "stereo + polarization", 3.55, 0.83, 0.93, 0.40},
+    {"stereo SLAM", 5.12, 0.91, 0.99, 0.42},
+    {"stereo + polarization", 3.55, 0.83, 0.93, 0.40},
 }};
+
+// Pictures of the sky on a turntable [Fan2020, table 1].
+inline constexpr std::string_view kFan2020 = "Fan2020";
+inline constexpr std::array<PaperRow, 2> kFan2020FewClouds_deg{{
+    {"least squares, few clouds", {}, -0.3082, 0.4832, 0.3721},
+    {"RANSAC + TLS, few clouds", {}, -0.1680, 0.3625, 0.3212},
+}};
+inline constexpr std::array<PaperRow, 2> kFan2020ManyClouds_deg{{
+    {"least squares, many clouds", {}, -0.1723, 1.3601, 1.3492},
+    {"RANSAC + TLS, many clouds", {}, -0.4897, 0.7819, 0.6096},
+}};
+
+// Of the scenario's paper; no rows where that has none.
+[[nodiscard]] PaperTable PaperHeadings(const Scenario& scenario);
+[[nodiscard]] PaperTable PaperPositions(const Scenario& scenario);
 
 }  // namespace polnav::testbed

@@ -26,11 +26,18 @@ Json ToJson(const OutcomeCounts& counts) {
           {"failed_solves", counts.failed_solves}};
 }
 
+// A compass that finds no heading in a picture answers nothing.
+double AnsweredFraction(const OutcomeCounts& counts) {
+  const auto asked = static_cast<double>(counts.used + counts.gated + counts.unusable);
+  return asked > 0.0 ? static_cast<double>(counts.used) / asked : 0.0;
+}
+
 Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
   Json json = {{"sha256", run.sha256}};
   // No answer at all leaves every metric out: criteria about it fail.
-  if (const std::optional<EstimatorScore> score = Score(truth, run.estimates)) {
+  if (const auto score = Score(truth, run.estimates, run.heading_only)) {
     json.update(testbed::ToJson(*score));
+    if (run.heading_only) json["tracked_fraction"] = AnsweredFraction(run.counts);
   } else {
     json["tracked_fraction"] = 0.0;
   }

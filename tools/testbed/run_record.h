@@ -36,6 +36,7 @@ struct OutcomeCounts {
 
 struct EstimatorRun {
   std::string name;
+  bool heading_only = false;             // a compass: the rest of its poses means nothing
   std::vector<nav::Estimate> estimates;  // in order of stamps
   std::string sha256;                    // of the estimates
   OutcomeCounts counts;

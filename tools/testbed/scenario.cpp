@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
+#include "sky/mosaic.h"
 #include "tools/testbed/estimators.h"
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
@@ -39,7 +41,27 @@ void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors)
   check("stereo", sensors.stereo);
   check("imu", sensors.imu);
   check("polarimeter", sensors.polarimeter);
+  check("polarization_camera", sensors.polarization_camera);
   check("reference", sensors.reference);
+}
+
+void CheckVehicle(const YamlDocument& document, const sim::VehicleOptions& vehicle) {
+  if (vehicle.car && vehicle.turntable) {
+    FailAt(document, "vehicle", "'car' and 'turntable' exclude each other");
+  }
+}
+
+void CheckPolarizationCamera(const YamlDocument& document,
+                             const std::optional<sim::PolarizationCameraOptions>& camera) {
+  if (!camera) return;
+  const std::string key = "sensors.polarization_camera";
+  if (camera->width_px % 2 != 0) FailAt(document, key + ".width_px", "a mosaic's width is even");
+  if (camera->height_px % 2 != 0) FailAt(document, key + ".height_px", "a mosaic's height is even");
+  try {
+    (void)sky::ParseLayout(camera->layout);
+  } catch (const std::invalid_argument& error) {
+    FailAt(document, key + ".layout", error.what());
+  }
 }
 
 const EstimatorInfo& FindEstimator(const YamlDocument& document, const std::string& key,
@@ -69,6 +91,10 @@ void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
     if (info.needs_polarimeter && !scenario.sensors.polarimeter) {
       FailAt(document, "estimators.run",
              fmt::format("'{}' needs a polarimeter, but sensors.polarimeter is off", name));
+    }
+    if (info.needs_polarization_camera && !scenario.sensors.polarization_camera) {
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' needs a sky camera, but sensors.polarization_camera is off", name));
     }
   }
   for (const std::string& name : scenario.estimators.close_loops) {
@@ -121,7 +147,9 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   Scenario scenario;
   LoadOptions(document, scenario);
   CheckBasics(document, scenario);
+  CheckVehicle(document, scenario.vehicle);
   CheckRates(document, scenario.sensors);
+  CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckEstimators(document, scenario);
   CheckCriteria(document, scenario);
   return scenario;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "nav/polarization/compass_options.h"
 #include "nav/polarization/options.h"
 #include "nav/stereo/options.h"
 #include "sim/simulator.h"
@@ -37,6 +38,9 @@ struct EstimatorOptions {
   StartOptions start;
   nav::StereoOptions stereo;
   nav::PolarizationOptions polarization;
+  nav::CompassOptions compass;
+  // The sky camera goes through a calibration turn before the run; see calibration_turn.h.
+  bool calibrate_sky_camera = false;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -45,6 +49,8 @@ struct EstimatorOptions {
     v("start", start);
     v("stereo", stereo);
     v("polarization", polarization);
+    v("compass", compass);
+    v("calibrate_sky_camera", calibrate_sky_camera);
   }
 };
 
@@ -75,7 +81,7 @@ struct Scenario {
   sky::SiteOptions site;
   sky::SkyOptions sky;
   sim::WorldOptions world;
-  sim::CarOptions vehicle;
+  sim::VehicleOptions vehicle;
   sim::SensorOptions sensors;
   EstimatorOptions estimators;
   std::vector<Criterion> criteria;

@@ -35,34 +35,55 @@ std::optional<double> PositionNees(const PosePair& pair, const nav::Matrix6d& co
 double MeanOf(const std::vector<double>& values) { return Summarize(values).mean; }
 
 std::optional<Nees> ScoreNees(const ErrorSeries& series) {
-  if (series.position_nees.empty() || series.heading_nees.empty()) return std::nullopt;
+  if (series.heading_nees.empty()) return std::nullopt;
   const auto within = std::count_if(series.heading_nees.begin(), series.heading_nees.end(),
                                     [](double nees) { return nees <= 9.0; });
-  return Nees{.position = MeanOf(series.position_nees),
-              .heading = MeanOf(series.heading_nees),
-              .heading_within_3_sigma =
-                  static_cast<double>(within) / static_cast<double>(series.heading_nees.size())};
+  Nees nees{.heading = MeanOf(series.heading_nees),
+            .heading_within_3_sigma =
+                static_cast<double>(within) / static_cast<double>(series.heading_nees.size())};
+  if (!series.position_nees.empty()) nees.position = MeanOf(series.position_nees);
+  return nees;
 }
 
-ErrorSeries SeriesOf(const std::vector<Judged>& judged) {
+void AddHeading(const Judged& judged, ErrorSeries& series) {
+  const auto& [pair, estimate] = judged;
+  const double heading_rad =
+      nav::WrapPi(nav::CompassHeading(pair.estimate.q) - nav::CompassHeading(pair.truth.q));
+  series.heading_deg.push_back(nav::RadToDeg(heading_rad));
+  const std::optional<double> sigma_rad = HeadingSigma(*estimate);
+  series.heading_sigma_deg.push_back(sigma_rad ? std::optional(nav::RadToDeg(*sigma_rad))
+                                               : std::nullopt);
+  if (sigma_rad) series.heading_nees.push_back(std::pow(heading_rad / *sigma_rad, 2));
+}
+
+void AddPosition(const Judged& judged, ErrorSeries& series) {
+  const Eigen::Vector3d error_m = judged.pair.estimate.p - judged.pair.truth.p;
+  series.position_m.push_back(error_m.norm());
+  series.horizontal_m.push_back(error_m.head<2>().norm());
+  if (const auto nees = PositionNees(judged.pair, judged.estimate->covariance)) {
+    series.position_nees.push_back(*nees);
+  }
+}
+
+ErrorSeries SeriesOf(const std::vector<Judged>& judged, bool heading_only) {
   ErrorSeries series;
-  for (const auto& [pair, estimate] : judged) {
-    const double heading_rad =
-        nav::WrapPi(nav::CompassHeading(pair.estimate.q) - nav::CompassHeading(pair.truth.q));
-    const Eigen::Vector3d error_m = pair.estimate.p - pair.truth.p;
-    series.t_s.push_back(nav::ToSeconds(pair.stamp));
-    series.heading_deg.push_back(nav::RadToDeg(heading_rad));
-    series.position_m.push_back(error_m.norm());
-    series.horizontal_m.push_back(error_m.head<2>().norm());
-    const std::optional<double> sigma_rad = HeadingSigma(*estimate);
-    series.heading_sigma_deg.push_back(sigma_rad ? std::optional(nav::RadToDeg(*sigma_rad))
-                                                 : std::nullopt);
-    if (sigma_rad) series.heading_nees.push_back(std::pow(heading_rad / *sigma_rad, 2));
-    if (const auto nees = PositionNees(pair, estimate->covariance)) {
-      series.position_nees.push_back(*nees);
-    }
+  for (const Judged& j : judged) {
+    series.t_s.push_back(nav::ToSeconds(j.pair.stamp));
+    AddHeading(j, series);
+    if (!heading_only) AddPosition(j, series);
   }
   return series;
+}
+
+void ScorePositions(const std::vector<PosePair>& pairs, const ErrorSeries& series,
+                    EstimatorScore& score) {
+  if (const std::optional<nav::Pose> T_WE = Align(pairs, Alignment::kSe3)) {
+    score.ate_m = Summarize(ApeTranslation(Moved(*T_WE, pairs)));
+  }
+  score.rpe_1m = ScoreRpe(pairs, 1.0);
+  score.rpe_100m = ScoreRpe(pairs, kDriftDistance_m);
+  if (score.rpe_100m) score.drift_percent = score.rpe_100m->trans_m.mean / kDriftDistance_m * 100.0;
+  score.position_m = {Summarize(series.position_m), Summarize(series.horizontal_m).rmse};
 }
 
 }  // namespace
@@ -78,8 +99,9 @@ std::optional<double> HeadingSigma(const nav::Estimate& estimate) {
   return variance > 0.0 ? std::optional(std::sqrt(variance)) : std::nullopt;
 }
 
-ErrorSeries ComputeErrors(const Trajectory& truth, const std::vector<nav::Estimate>& estimates) {
-  return SeriesOf(Judge(truth, estimates));
+ErrorSeries ComputeErrors(const Trajectory& truth, const std::vector<nav::Estimate>& estimates,
+                          bool heading_only) {
+  return SeriesOf(Judge(truth, estimates), heading_only);
 }
 
 std::optional<RpeScore> ScoreRpe(const std::vector<PosePair>& pairs, double delta_m) {
@@ -101,7 +123,8 @@ HeadingScore ScoreHeading(const std::vector<double>& signed_errors) {
 }
 
 std::optional<EstimatorScore> Score(const Trajectory& truth,
-                                    const std::vector<nav::Estimate>& estimates) {
+                                    const std::vector<nav::Estimate>& estimates,
+                                    bool heading_only) {
   const std::vector<Judged> judged = Judge(truth, estimates);
   if (judged.empty()) return std::nullopt;
   std::vector<PosePair> pairs;
@@ -110,16 +133,10 @@ std::optional<EstimatorScore> Score(const Trajectory& truth,
     pairs.push_back(j.pair);
     tracked += j.estimate->tracked ? 1.0 : 0.0;
   }
-  const ErrorSeries series = SeriesOf(judged);
+  const ErrorSeries series = SeriesOf(judged, heading_only);
   EstimatorScore score;
-  if (const std::optional<nav::Pose> T_WE = Align(pairs, Alignment::kSe3)) {
-    score.ate_m = Summarize(ApeTranslation(Moved(*T_WE, pairs)));
-  }
-  score.rpe_1m = ScoreRpe(pairs, 1.0);
-  score.rpe_100m = ScoreRpe(pairs, kDriftDistance_m);
-  if (score.rpe_100m) score.drift_percent = score.rpe_100m->trans_m.mean / kDriftDistance_m * 100.0;
   score.heading_deg = ScoreHeading(series.heading_deg);
-  score.position_m = {Summarize(series.position_m), Summarize(series.horizontal_m).rmse};
+  if (!heading_only) ScorePositions(pairs, series, score);
   score.nees = ScoreNees(series);
   score.tracked_fraction = tracked / static_cast<double>(judged.size());
   return score;

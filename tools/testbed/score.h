@@ -2,6 +2,7 @@
 //
 // ATE after SE(3) alignment (the shape of the trajectory); position and heading without any (where
 // it believed to be); RPE over 1 m and 100 m; consistency of what it said about its own errors.
+// A compass answers a heading and nothing else: what is about positions is then absent.
 // Degrees and metres, as reported. Headings are compass azimuths; an error is estimate minus truth,
 // wrapped.
 #pragma once
@@ -20,7 +21,7 @@ struct ErrorSeries {
   std::vector<double> t_s;
   std::vector<double> heading_deg;                       // signed
   std::vector<std::optional<double>> heading_sigma_deg;  // as the estimator claims
-  std::vector<double> position_m;                        // 3-D
+  std::vector<double> position_m;                        // 3-D; empty for a compass
   std::vector<double> horizontal_m;
   std::vector<double> position_nees;  // empty when no covariance is positive definite
   std::vector<double> heading_nees;
@@ -31,7 +32,8 @@ struct ErrorSeries {
 [[nodiscard]] std::optional<double> HeadingSigma(const nav::Estimate& estimate);
 
 [[nodiscard]] ErrorSeries ComputeErrors(const Trajectory& truth,
-                                        const std::vector<nav::Estimate>& estimates);
+                                        const std::vector<nav::Estimate>& estimates,
+                                        bool heading_only = false);
 
 struct RpeScore {
   Statistics trans_m;
@@ -59,7 +61,7 @@ struct PositionScore {
 // Mean normalized estimation error squared: 3 (position) and 1 (heading) when honest, larger when
 // too sure of itself. Within: share of heading errors inside three sigma, 0.997 when honest.
 struct Nees {
-  double position = 0.0;
+  std::optional<double> position;
   double heading = 0.0;
   double heading_within_3_sigma = 0.0;
 };
@@ -69,7 +71,7 @@ struct EstimatorScore {
   std::optional<RpeScore> rpe_1m;
   std::optional<RpeScore> rpe_100m;
   HeadingScore heading_deg;
-  PositionScore position_m;
+  std::optional<PositionScore> position_m;
   std::optional<double> drift_percent;  // mean RPE over 100 m, of 100 m
   std::optional<Nees> nees;
   double tracked_fraction = 0.0;
@@ -77,6 +79,7 @@ struct EstimatorScore {
 
 // Nothing when no estimate belongs to any truth.
 [[nodiscard]] std::optional<EstimatorScore> Score(const Trajectory& truth,
-                                                  const std::vector<nav::Estimate>& estimates);
+                                                  const std::vector<nav::Estimate>& estimates,
+                                                  bool heading_only = false);
 
 }  // namespace polnav::testbed

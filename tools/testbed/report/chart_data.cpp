@@ -45,7 +45,7 @@ Json PathData(const Trajectory& trajectory) {
 }
 
 Json EstimatorData(const EstimatorRun& run, const Trajectory& truth) {
-  const ErrorSeries series = ComputeErrors(truth, run.estimates);
+  const ErrorSeries series = ComputeErrors(truth, run.estimates, run.heading_only);
   const std::vector<std::size_t> heading = Thin(series.heading_deg, kMaxPoints);
   const std::vector<std::size_t> position = Thin(series.position_m, kMaxPoints);
   Json sigma = Json::array();
@@ -55,12 +55,14 @@ Json EstimatorData(const EstimatorRun& run, const Trajectory& truth) {
   }
   Json data;
   data["name"] = run.name;
-  data["path"] = PathData(TrajectoryOf(run.estimates));
+  if (!run.heading_only) data["path"] = PathData(TrajectoryOf(run.estimates));
   data["heading"] = {{"t", Picked(series.t_s, heading)},
                      {"error", Picked(series.heading_deg, heading)},
                      {"sigma", sigma}};
-  data["position"] = {{"t", Picked(series.t_s, position)},
-                      {"error", Picked(series.position_m, position)}};
+  if (!run.heading_only) {
+    data["position"] = {{"t", Picked(series.t_s, position)},
+                        {"error", Picked(series.position_m, position)}};
+  }
   return data;
 }
 

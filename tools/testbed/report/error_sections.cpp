@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/paper_tables.h"
@@ -23,7 +22,7 @@ std::string Change(std::optional<double> value, std::optional<double> base) {
 }
 
 std::string ErrorTable(const Json& result, const std::string& errors, const std::string& mean,
-                       std::span<const PaperRow> paper) {
+                       const PaperTable& paper) {
   HtmlTable table{.rows = {{"", "max", "mean", "RMSE", "std", "RMSE change"}}};
   std::optional<double> base;
   bool first = true;
@@ -37,12 +36,13 @@ std::string ErrorTable(const Json& result, const std::string& errors, const std:
     table.row_class.emplace_back("");
     first = false;
   }
-  for (const PaperRow& row : paper) {
+  for (const PaperRow& row : paper.rows) {
     const auto fixed = [](double v) { return fmt::format("{:.2f}", v); };
-    const bool is_base = row.label == paper.front().label;
-    table.rows.push_back({fmt::format("{}: {}", kChu2021, row.label), fixed(row.max),
-                          fixed(row.mean), fixed(row.rmse), fixed(row.std),
-                          is_base ? "" : Change(row.rmse, paper.front().rmse)});
+    const bool is_base = row.label == paper.rows.front().label;
+    table.rows.push_back({fmt::format("{}: {}", paper.paper, row.label),
+                          row.max ? fixed(*row.max) : "–", fixed(row.mean), fixed(row.rmse),
+                          fixed(row.std),
+                          is_base ? "" : Change(row.rmse, paper.rows.front().rmse)});
     table.row_class.emplace_back("paper");
   }
   return table.Html();
@@ -63,33 +63,48 @@ std::string DetailTable(const Json& result) {
   return table.Html();
 }
 
+std::string ConsistencyTable(const Json& result) {
+  HtmlTable table{.rows = {{"", "NEES heading (1)", "within 3σ", "answered"}}};
+  for (const auto& [name, s] : result["estimators"].items()) {
+    table.rows.push_back({name, Number(s, "nees.heading", 2),
+                          Number(s, "nees.heading_within_3_sigma", 3),
+                          Number(s, "tracked_fraction", 3)});
+  }
+  return table.Html();
+}
+
 }  // namespace
 
 std::string ErrorSections(const ReportInput& input) {
   if (input.result["estimators"].empty()) return "";
-  const auto& papers = input.scenario.paper;
-  const bool chu = std::find(papers.begin(), papers.end(), kChu2021) != papers.end();
-  std::span<const PaperRow> heading;
-  std::span<const PaperRow> position;
-  if (chu) {
-    heading = kChu2021Heading_deg;
-    position = kChu2021Position_m;
+  const PaperTable paper = PaperHeadings(input.scenario);
+  std::string note =
+      paper.signed_mean ? "Mean is of the signed error; " : "Mean is of the magnitude; ";
+  note += "change is against the first row.";
+  if (!paper.rows.empty()) {
+    note +=
+        " Rows in italics are the paper's, measured with its hardware; all others come from "
+        "this run.";
   }
-  const std::string note =
-      chu ? "<p class=\"soft small\">Rows in italics are the paper's, measured with its hardware; "
-            "all others come from this run. Mean is of the magnitude; "
-            "change is against stereo alone.</p>"
-          : "<p class=\"soft small\">Mean is of the magnitude.</p>";
-  return "<div class=\"columns\"><section><h2>Heading error [°]</h2>" +
-         ErrorTable(input.result, "heading_deg", "mean_abs", heading) + note +
-         "</section><section><h2>Position error [m]</h2>" +
-         ErrorTable(input.result, "position_m", "mean", position) +
-         "<p class=\"soft small\">Without any alignment: where the estimator believed to be.</p>"
-         "</section></div><section><h2>Trajectory and consistency</h2>" +
-         DetailTable(input.result) +
-         "<p class=\"soft small\">ATE after SE(3) alignment; RPE: mean over consecutive pairs by "
-         "distance travelled (evo's definitions). NEES in brackets: what an honest covariance "
-         "gives.</p></section>";
+  std::string html =
+      "<div class=\"columns\"><section><h2>Heading error [°]</h2>" +
+      ErrorTable(input.result, "heading_deg", paper.signed_mean ? "mean" : "mean_abs", paper) +
+      "<p class=\"soft small\">" + note + "</p></section>";
+  if (HasPositions(input)) {
+    html +=
+        "<section><h2>Position error [m]</h2>" +
+        ErrorTable(input.result, "position_m", "mean", PaperPositions(input.scenario)) +
+        "<p class=\"soft small\">Without any alignment: where the estimator believed to be.</p>"
+        "</section></div><section><h2>Trajectory and consistency</h2>" +
+        DetailTable(input.result) +
+        "<p class=\"soft small\">ATE after SE(3) alignment; RPE: mean over consecutive pairs by "
+        "distance travelled (evo's definitions). NEES in brackets: what an honest covariance "
+        "gives.</p></section>";
+    return html;
+  }
+  return html + "<section><h2>Consistency</h2>" + ConsistencyTable(input.result) +
+         "<p class=\"soft small\">NEES in brackets: what an honest sigma gives. Answered: share of "
+         "the pictures in which a heading was found.</p></section></div>";
 }
 
 std::string CriteriaSection(const ReportInput& input) {

@@ -84,8 +84,9 @@
   function drawTrajectory() {
     const sets = [line("truth", points(run.truth.x, run.truth.y), color("--truth"),
                        { borderDash: [6, 4], borderWidth: 1.5, order: -1 })];
-    run.estimators.forEach((e, i) =>
-      sets.push(line(e.name, points(e.path.x, e.path.y), color(slot(i)))));
+    run.estimators.forEach((e, i) => {
+      if (e.path) sets.push(line(e.name, points(e.path.x, e.path.y), color(slot(i))));
+    });
     draw("trajectory", sets, "east [m]", "north [m]", { plugins: [equalAxes] });
   }
 
@@ -112,8 +113,11 @@
   }
 
   function drawPosition() {
-    const sets = run.estimators.map((e, i) =>
-      line(e.name, points(e.position.t, e.position.error), color(slot(i))));
+    const sets = [];
+    run.estimators.forEach((e, i) => {
+      if (!e.position) return;
+      sets.push(line(e.name, points(e.position.t, e.position.error), color(slot(i))));
+    });
     draw("position", sets, "time [s]", "position error [m]",
          { y: { beginAtZero: true }, x: wholeRun });
   }

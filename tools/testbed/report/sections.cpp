@@ -101,16 +101,28 @@ std::string HeaderSection(const ReportInput& input) {
          Figure(StartText(s.site.utc), "start") + "</div>";
 }
 
+bool HasPositions(const ReportInput& input) {
+  return std::any_of(input.record.estimators.begin(), input.record.estimators.end(),
+                     [](const EstimatorRun& run) { return !run.heading_only; });
+}
+
 std::string ChartSections(const ReportInput& input) {
-  std::string html = "<div class=\"columns\">" + Chart("trajectory", "Trajectory",
-                                                       "Seen from above, equal axes, not aligned.",
-                                                       "chart square");
-  if (input.record.estimators.empty()) return html + "</div>";
-  html += "<div>" +
-          Chart("heading", "Heading error over time",
-                "Estimate minus truth; shaded: three sigma as the estimator claims.") +
-          Chart("position", "Position error over time", "Three-dimensional, not aligned.") +
-          "</div></div><div class=\"columns\">";
+  const std::string heading =
+      Chart("heading", "Heading error over time",
+            "Estimate minus truth; shaded: three sigma as the estimator claims.");
+  std::string html;
+  if (input.record.estimators.empty() || HasPositions(input)) {
+    html = "<div class=\"columns\">" + Chart("trajectory", "Trajectory",
+                                             "Seen from above, equal axes, not aligned.",
+                                             "chart square");
+    if (input.record.estimators.empty()) return html + "</div>";
+    html += "<div>" + heading +
+            Chart("position", "Position error over time", "Three-dimensional, not aligned.") +
+            "</div></div>";
+  } else {
+    html = heading;
+  }
+  html += "<div class=\"columns\">";
   if (!input.record.polarization_readings.empty()) {
     html += Chart("readings", "Single polarization readings",
                   "The heading that one sample alone would give, against the truth.");

@@ -8,6 +8,9 @@
 
 namespace polnav::testbed {
 
+// Some estimator answers more than a heading.
+[[nodiscard]] bool HasPositions(const ReportInput& input);
+
 [[nodiscard]] std::string HeaderSection(const ReportInput& input);
 [[nodiscard]] std::string ChartSections(const ReportInput& input);
 [[nodiscard]] std::string ErrorSections(const ReportInput& input);

@@ -1,0 +1,26 @@
+// Where is the solar meridian, when nobody says how high the sun stands?
+//
+// All E-vectors are across the sun: the least of sum w (e . s)^2 over unit s is the sun or the
+// antisun. Weights as in stokes_fit.h, with the sun that was found before.
+#pragma once
+
+#include <optional>
+
+#include "nav/polarization/compass_options.h"
+#include "nav/polarization/sky_blocks.h"
+#include "nav/polarization/stokes_fit.h"
+
+namespace polnav::nav {
+
+// angle_rad and sigma_rad of the result are the meridian's, mod pi; elevation_rad is the sun's or,
+// with its sign changed, the antisun's. Nothing when the blocks are too few.
+struct MeridianFit {
+  StokesFit fit;
+  double elevation_rad = 0.0;
+};
+
+[[nodiscard]] std::optional<MeridianFit> FitMeridian(const CompassOptions& options,
+                                                     const SkyBlocks& sky, const Tiles& tiles,
+                                                     const InstrumentSpread& spread);
+
+}  // namespace polnav::nav

@@ -1,0 +1,48 @@
+#include "tools/testbed/estimators.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+namespace polnav::testbed {
+
+const EstimatorInfo& InfoOf(std::string_view name) {
+  const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
+                                 [&](const EstimatorInfo& i) { return i.name == name; });
+  if (info == kEstimators.end()) {
+    throw std::logic_error("no estimator is called " + std::string(name));
+  }
+  return *info;
+}
+
+AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario, const nav::Rig& rig,
+                           const nav::StartPrior& start) {
+  const EstimatorInfo& info = InfoOf(name);
+  if (info.needs_polarization_camera) {
+    nav::CompassOptions options = scenario.estimators.compass;
+    options.method = info.name.substr(std::string_view("compass_").size());
+    return nav::CompassEstimator(options, rig.polarization_camera.value(), SunFor(scenario.site),
+                                 start);
+  }
+  std::optional<nav::HeadingFusion> polarization;
+  if (info.needs_polarimeter) {
+    polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),
+                         SunFor(scenario.site));
+  }
+  return nav::StereoEstimator(scenario.estimators.stereo, rig.stereo.value(), start,
+                              std::move(polarization), ClosesLoops(scenario, name));
+}
+
+bool ClosesLoops(const Scenario& scenario, const std::string& name) {
+  const auto& names = scenario.estimators.close_loops;
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+nav::SunModel SunFor(const sky::SiteOptions& site) {
+  const auto utc = sky::ParseUtc(site.utc);
+  if (!utc) throw std::logic_error("SunFor: site.utc is no date: " + site.utc);
+  const sky::SunArc arc = sky::ComputeSunArc(sky::SiteOf(site), *utc);
+  return [arc](nav::TimeNs stamp) { return arc.At(nav::ToSeconds(stamp)); };
+}
+
+}  // namespace polnav::testbed

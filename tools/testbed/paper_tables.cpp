@@ -1,0 +1,30 @@
+#include "tools/testbed/paper_tables.h"
+
+#include <algorithm>
+
+namespace polnav::testbed {
+namespace {
+
+bool Cites(const Scenario& scenario, std::string_view paper) {
+  return std::find(scenario.paper.begin(), scenario.paper.end(), paper) != scenario.paper.end();
+}
+
+}  // namespace
+
+PaperTable PaperHeadings(const Scenario& scenario) {
+  if (Cites(scenario, kChu2021)) return {.paper = kChu2021, .rows = kChu2021Heading_deg};
+  if (Cites(scenario, kFan2020)) {
+    const bool many = scenario.sky.clouds == "many_clouds";
+    return {.paper = kFan2020,
+            .signed_mean = true,
+            .rows = many ? kFan2020ManyClouds_deg : kFan2020FewClouds_deg};
+  }
+  return {};
+}
+
+PaperTable PaperPositions(const Scenario& scenario) {
+  if (Cites(scenario, kChu2021)) return {.paper = kChu2021, .rows = kChu2021Position_m};
+  return {};
+}
+
+}  // namespace polnav::testbed
