@@ -85,6 +85,15 @@ TEST_F(CompassCommand, PrintsARowAnImage) {
             "file,status,heading_deg,sigma_deg,axis_deg,dop,used_fraction,ms");
 }
 
+// The papers' equations give a heading and its opposite [Fan2020, eq. 19].
+TEST_F(CompassCommand, ThePapersMethodsGiveTheHeadingUpToHalfATurn) {
+  const std::string a = Picture("a.tiff", 290.0);
+  ASSERT_EQ(CallWithSun({a, "--method", "lsq", "--json"}), kExitHolds);
+  const Json rows = Json::parse(out_.str());
+  EXPECT_EQ(rows[0]["status"], "half turn unknown");
+  EXPECT_NEAR(rows[0]["heading_deg"].get<double>(), 290.0 - 180.0, 1.0);
+}
+
 TEST_F(CompassCommand, WithoutASunGivesAnAxisAndNoHeading) {
   const std::string a = Picture("a.tiff", 75.0);
   ASSERT_EQ(Call({a, "--lens", "equidistant", "--focal-px", "115", "--json"}), kExitHolds);

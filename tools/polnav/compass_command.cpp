@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -166,6 +167,9 @@ std::vector<std::optional<double>> Numbers(const Row& row) {
   if (r.status == nav::CompassStatus::kHeading) {
     const double degrees = RadToDeg(r.heading_rad);
     numbers[0] = degrees < 0.0 ? degrees + 360.0 : degrees;
+  }
+  if (r.status == nav::CompassStatus::kHalfTurn) {  // of the two, the one below half a turn
+    numbers[0] = std::fmod(RadToDeg(r.heading_rad) + 360.0, 180.0);
   }
   if (any) numbers[1] = RadToDeg(r.sigma_rad);
   if (any) {
