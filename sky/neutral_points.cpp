@@ -1,5 +1,6 @@
 #include "sky/neutral_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,20 +30,28 @@ struct Plane {
     return sky.Look<double>(sun, up).q;
   }
 
-  [[nodiscard]] std::string NameOf(double angle_rad) const {
-    const double from_sun = angle_rad - sun_rad;
-    if (from_sun < 0.0) return "Brewster";
-    if (from_sun < 0.5 * pi) return "Babinet";
-    return from_sun < pi ? "Arago" : "fourth";
-  }
-
   Eigen::Vector3d level_W = Eigen::Vector3d::UnitY();
   double sun_rad;
 };
 
+// By their order in the plane: a glint on the sea may lift both points near the sun above it.
+std::vector<NeutralPoint> Named(const Plane& plane, const std::vector<double>& angles) {
+  std::vector<NeutralPoint> points;
+  const auto near_sun = std::count_if(
+      angles.begin(), angles.end(), [&](double angle) { return angle < plane.sun_rad + 0.5 * pi; });
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const auto place = static_cast<std::ptrdiff_t>(i);
+    const bool first = near_sun > 1 ? place == 0 : angles[i] < plane.sun_rad;
+    const char* const by_sun = first ? "Brewster" : "Babinet";
+    const char* const opposite = place == near_sun ? "Arago" : "fourth";
+    points.push_back({place < near_sun ? by_sun : opposite, plane.RayAt(angles[i])});
+  }
+  return points;
+}
+
 std::vector<NeutralPoint> Found(const ClearSky& sky, const Plane& plane) {
   constexpr int kSteps = 1440;
-  std::vector<NeutralPoint> points;
+  std::vector<double> angles;  // from the horizon below the sun over the zenith
   double last = plane.PolarizationAt(0.0, sky);
   for (int i = 1; i <= kSteps; ++i) {
     double low = pi * (i - 1) / kSteps;
@@ -54,11 +63,11 @@ std::vector<NeutralPoint> Found(const ClearSky& sky, const Plane& plane) {
         const bool as_low = (plane.PolarizationAt(middle, sky) < 0.0) == (last < 0.0);
         (as_low ? low : high) = middle;
       }
-      points.push_back({plane.NameOf(high), plane.RayAt(high)});
+      angles.push_back(high);
     }
     last = here;
   }
-  return points;
+  return Named(plane, angles);
 }
 
 }  // namespace
