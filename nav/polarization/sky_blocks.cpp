@@ -35,7 +35,6 @@ BlockView::BlockView(const CompassOptions& options,
     }
   }
   tiles_.likeness = Likeness(DegToRad(options.correlation_deg));
-  tiles_.precision = tiles_.likeness.inverse();
 }
 
 Eigen::MatrixXd BlockView::Likeness(double correlation_rad) const {

@@ -49,8 +49,7 @@ struct Tilt {
 
 // Patches of a picture: how alike their errors are.
 struct Tiles {
-  Eigen::MatrixXd likeness;   // correlation between tiles, by the angle between them
-  Eigen::MatrixXd precision;  // its inverse
+  Eigen::MatrixXd likeness;  // correlation between tiles, by the angle between them
 };
 
 // Where the blocks of one camera look: prepared once.
