@@ -122,6 +122,20 @@ double SigmaOf(const SkyBlocks& sky, const EVectors& vectors, const Eigen::Vecto
   return information > 0.0 ? std::sqrt(spread) / information : 1e3;
 }
 
+// Angle and sigma from the blocks that fit.used names. solve: moments to the sun's angle.
+void SolveUsed(const SkyBlocks& sky, const EVectors& vectors,
+               std::optional<double> sun_elevation_rad, double (*solve)(const Eigen::Matrix3d&),
+               PaperFit& fit) {
+  Eigen::Vector3d sun;
+  if (sun_elevation_rad) {
+    fit.angle_rad = solve(Moments(vectors, fit.used, *sun_elevation_rad));
+    sun = SunAt(fit.angle_rad, *sun_elevation_rad);
+  } else {
+    fit.angle_rad = AxisOf(vectors, fit.used, sun);
+  }
+  fit.sigma_rad = SigmaOf(sky, vectors, sun, fit.used);
+}
+
 // A hash with full avalanche: the same draw for the same number, everywhere.
 std::uint32_t Draw(std::uint32_t number) {
   std::uint32_t x = number * 0x9E3779B9U + 0x7F4A7C15U;
@@ -160,14 +174,7 @@ std::optional<PaperFit> FitLeastSquares(const SkyBlocks& sky,
   const EVectors vectors = EVectorsOf(sky);
   PaperFit fit;
   fit.used.assign(static_cast<std::size_t>(sky.size()), true);
-  Eigen::Vector3d sun;
-  if (sun_elevation_rad) {
-    fit.angle_rad = LeastSquares(Moments(vectors, fit.used, *sun_elevation_rad));
-    sun = SunAt(fit.angle_rad, *sun_elevation_rad);
-  } else {
-    fit.angle_rad = AxisOf(vectors, fit.used, sun);
-  }
-  fit.sigma_rad = SigmaOf(sky, vectors, sun, fit.used);
+  SolveUsed(sky, vectors, sun_elevation_rad, LeastSquares, fit);
   return fit;
 }
 
@@ -194,14 +201,7 @@ std::optional<PaperFit> FitRansacTls(const CompassOptions& options, const SkyBlo
     }
   }
   if (static_cast<std::size_t>(most) < kFewest) return std::nullopt;
-  Eigen::Vector3d sun;
-  if (sun_elevation_rad) {
-    fit.angle_rad = TotalLeastSquares(Moments(vectors, fit.used, *sun_elevation_rad));
-    sun = SunAt(fit.angle_rad, *sun_elevation_rad);
-  } else {
-    fit.angle_rad = AxisOf(vectors, fit.used, sun);
-  }
-  fit.sigma_rad = SigmaOf(sky, vectors, sun, fit.used);
+  SolveUsed(sky, vectors, sun_elevation_rad, TotalLeastSquares, fit);
   return fit;
 }
 

@@ -21,12 +21,11 @@ constexpr double kClearQuantile = 0.90;  // of the blocks, by polarization over 
 constexpr float kCauchy2 = 4.0F;         // square of where residuals begin to count less, in sigmas
 constexpr double kIndependent = 20.0;    // blocks that a picture is worth: neighbours err alike
 constexpr double kScatteringSigma = 0.1;  // of light scattered many times, over all light
-
-constexpr double kMisfit = 0.9;  // of residuals, that may be the angle's error
+constexpr double kMisfit = 0.9;           // of residuals, that may be the angle's error
 
 class Fit {
  public:
-  Fit(const CompassOptions& options, const SkyBlocks& sky, std::size_t tiles,
+  Fit(const CompassOptions& options, const SkyBlocks& sky, const Tiles& tiles,
       double sun_elevation_rad)
       : options_(options), sky_(sky), tiles_(tiles), pattern_(sky, sun_elevation_rad) {}
 
@@ -39,8 +38,7 @@ class Fit {
   // Returns the angle.
   [[nodiscard]] double Refine(double angle_rad, double& max_dop);
   // Of the angle of the last judgement.
-  [[nodiscard]] double Variance(double angle_rad, const Tiles& tiles,
-                                const InstrumentSpread& spread) const;
+  [[nodiscard]] double Variance(double angle_rad, const InstrumentSpread& spread) const;
   // Negative log-likelihood of a block, at the angle of the last judgement.
   [[nodiscard]] Eigen::ArrayXf Cost() const {
     return 0.5F * variance_.log() +
@@ -66,11 +64,15 @@ class Fit {
     Eigen::Array<float, Eigen::Dynamic, 2> parts;
   };
   [[nodiscard]] Equations Linearize() const;
+  // Information about the scattering beforehand, in the blocks' own count.
+  [[nodiscard]] double ScatteringPrior() const {
+    return static_cast<double>(sky_.size()) / kIndependent / (kScatteringSigma * kScatteringSigma);
+  }
 
   static double AngleOf(int k) { return 2.0 * std::numbers::pi * k / kCoarseAngles; }
   const CompassOptions& options_;
   const SkyBlocks& sky_;
-  std::size_t tiles_;  // how many
+  const Tiles& tiles_;
   RayleighPattern pattern_;
   RayleighPattern::Values values_;
   double scattering_ = 0.0;
@@ -129,7 +131,8 @@ void Fit::Judge(double angle_rad, double max_dop) {
 Fit::Equations Fit::Linearize() const {
   const Eigen::Index size = sky_.size();
   const double loose = 1.0 / std::pow(options_.patch_light_dop, 2);
-  std::vector<Eigen::Vector3d> sums(tiles_, Eigen::Vector3d(0.0, 0.0, loose));
+  std::vector<Eigen::Vector3d> sums(static_cast<std::size_t>(tiles_.likeness.rows()),
+                                    Eigen::Vector3d(0.0, 0.0, loose));
   for (Eigen::Index i = 0; i < size; ++i) {
     const float pull = weight_[i] * lost_[i];
     sums[static_cast<std::size_t>(sky_.tile[static_cast<std::size_t>(i)])] +=
@@ -148,15 +151,12 @@ Fit::Equations Fit::Linearize() const {
     equations.information(row, 0) = (equations.parts.col(row) * derivative_).sum();
     equations.information(row, 1) = (equations.parts.col(row) * vertical_).sum();
   }
-  equations.information(1, 1) +=
-      static_cast<double>(size) / kIndependent / (kScatteringSigma * kScatteringSigma);
+  equations.information(1, 1) += ScatteringPrior();
   return equations;
 }
 
 double Fit::Refine(double angle_rad, double& max_dop) {
   scattering_ = 0.0;
-  const double prior =
-      static_cast<double>(sky_.size()) / kIndependent / (kScatteringSigma * kScatteringSigma);
   for (int i = 0; i < kIterations; ++i) {
     max_dop = MaxDop(angle_rad);
     Judge(angle_rad, max_dop);
@@ -164,7 +164,7 @@ double Fit::Refine(double angle_rad, double& max_dop) {
     if (!(equations.information(0, 0) > 0.0)) return angle_rad;
     const Eigen::Vector2d gradient(
         (equations.parts.col(0) * values_.across).sum(),
-        (equations.parts.col(1) * values_.across).sum() - prior * scattering_);
+        (equations.parts.col(1) * values_.across).sum() - ScatteringPrior() * scattering_);
     const Eigen::Vector2d step = equations.information.inverse() * gradient;
     const double turn = std::clamp(step[0], -kLongestStep_rad, kLongestStep_rad);
     angle_rad = WrapPi(angle_rad + turn);
@@ -175,15 +175,14 @@ double Fit::Refine(double angle_rad, double& max_dop) {
   return angle_rad;
 }
 
-double Fit::Variance(double angle_rad, const Tiles& tiles, const InstrumentSpread& spread) const {
+double Fit::Variance(double angle_rad, const InstrumentSpread& spread) const {
   const Equations equations = Linearize();
   const Eigen::Matrix2d inverse = equations.information.inverse();
   if (!(inverse(0, 0) > 0.0)) return std::numeric_limits<double>::infinity();
   // What each block's residual does to the angle.
   const Eigen::ArrayXf pull = equations.parts.col(0) * static_cast<float>(inverse(0, 0)) +
                               equations.parts.col(1) * static_cast<float>(inverse(0, 1));
-  const Eigen::Index count = tiles.likeness.rows();
-  Eigen::VectorXd patch = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd patch = Eigen::VectorXd::Zero(tiles_.likeness.rows());
   Eigen::VectorXd blocks = patch;
   Eigen::VectorXd seen = patch;  // squares of what blocks of a patch do
   for (Eigen::Index i = 0; i < sky_.size(); ++i) {
@@ -195,7 +194,7 @@ double Fit::Variance(double angle_rad, const Tiles& tiles, const InstrumentSprea
   // Clouds light the gaps too, the more of them there are.
   const double hidden = 1.0 - Clear() / static_cast<double>(std::max(sky_.in_view, 1));
   const double believed =
-      patch.dot(tiles.likeness * patch) *
+      patch.dot(tiles_.likeness * patch) *
       (std::pow(options_.pattern_sigma, 2) + std::pow(options_.gap_light_dop * hidden, 2));
   // Where no sky is clear, cloud is taken for it: residuals, as if alike over a patch, tell.
   const double model = std::max(believed, std::pow(kMisfit * hidden, 2) * blocks.dot(seen));
@@ -235,7 +234,7 @@ double Evidence(const SkyBlocks& sky, const Eigen::ArrayXf& cost, const Eigen::A
 
 StokesFit FitStokes(const CompassOptions& options, const SkyBlocks& sky, const Tiles& tiles,
                     double sun_elevation_rad, const InstrumentSpread& spread) {
-  Fit fit(options, sky, static_cast<std::size_t>(tiles.likeness.rows()), sun_elevation_rad);
+  Fit fit(options, sky, tiles, sun_elevation_rad);
   struct Candidate {
     double angle_rad;
     double max_dop;
@@ -274,7 +273,7 @@ StokesFit FitStokes(const CompassOptions& options, const SkyBlocks& sky, const T
   }
   fit.set_scattering(candidates[best].scattering);
   fit.Judge(result.angle_rad, result.max_dop);
-  result.sigma_rad = std::sqrt(fit.Variance(result.angle_rad, tiles, spread));
+  result.sigma_rad = std::sqrt(fit.Variance(result.angle_rad, spread));
   const Eigen::ArrayXf dop = (sky.q.square() + sky.u.square()).sqrt();
   result.agreement = fit.values().along.sum() / std::max(dop.sum(), 1e-6F);
   const Eigen::ArrayXf weight = fit.Weight();
