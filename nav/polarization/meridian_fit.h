@@ -1,7 +1,7 @@
 // Where is the solar meridian, when nobody says how high the sun stands?
 //
-// All E-vectors are across the sun: the least of sum w (e . s)^2 over unit s is the sun or the
-// antisun. Weights as in stokes_fit.h, with the sun that was found before.
+// All E-vectors are across the sun: the least of sum |p|^2 (e . s)^2 over unit s is near the sun or
+// the antisun. Elevations about it are then searched with the heading's own fit (stokes_fit.h).
 #pragma once
 
 #include <optional>

@@ -6,12 +6,15 @@
 
 namespace polnav::testbed {
 
+const EstimatorInfo* FindInfo(std::string_view name) {
+  const auto* const info = std::find_if(kEstimators.begin(), kEstimators.end(),
+                                        [&](const EstimatorInfo& i) { return i.name == name; });
+  return info == kEstimators.end() ? nullptr : info;
+}
+
 const EstimatorInfo& InfoOf(std::string_view name) {
-  const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
-                                 [&](const EstimatorInfo& i) { return i.name == name; });
-  if (info == kEstimators.end()) {
-    throw std::logic_error("no estimator is called " + std::string(name));
-  }
+  const EstimatorInfo* const info = FindInfo(name);
+  if (info == nullptr) throw std::logic_error("no estimator is called " + std::string(name));
   return *info;
 }
 

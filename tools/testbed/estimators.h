@@ -47,7 +47,8 @@ inline constexpr std::array<EstimatorInfo, 6> kEstimators{{
      .heading_only = true},
 }};
 
-// Throws std::logic_error when there is none of that name.
+// Null when there is none of that name; InfoOf then throws std::logic_error.
+[[nodiscard]] const EstimatorInfo* FindInfo(std::string_view name);
 [[nodiscard]] const EstimatorInfo& InfoOf(std::string_view name);
 
 using AnyEstimator = std::variant<nav::StereoEstimator, nav::CompassEstimator>;

@@ -66,9 +66,7 @@ void CheckPolarizationCamera(const YamlDocument& document,
 
 const EstimatorInfo& FindEstimator(const YamlDocument& document, const std::string& key,
                                    const std::string& name) {
-  const auto info = std::find_if(kEstimators.begin(), kEstimators.end(),
-                                 [&](const EstimatorInfo& i) { return i.name == name; });
-  if (info != kEstimators.end()) return *info;
+  if (const EstimatorInfo* const info = FindInfo(name)) return *info;
   std::vector<std::string> names;
   for (const EstimatorInfo& known : kEstimators) names.emplace_back(known.name);
   const std::string nearest = NearestWord(name, names);
