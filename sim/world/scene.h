@@ -4,9 +4,26 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
+#include "nav/api/geometry.h"
+#include "nav/api/time.h"
+
 namespace polnav::sim {
+
+// What kind of thing a surface belongs to; the instance label of everything that stands still.
+enum class Label : std::uint8_t {
+  kSky = 0,
+  kGround = 1,
+  kBuilding = 2,
+  kVegetation = 3,
+  kStreetThing = 4,  // lamps, parked cars, benches, signs
+  kStructure = 5,    // bridges, tunnels, walls
+  kVehicle = 6,
+  kPerson = 7,
+  kUser = 8,  // of a scene file
+};
 
 struct Vertex {
   Eigen::Vector3f p_W_m;
@@ -22,10 +39,25 @@ struct Mesh {
   int texture = 0;                     // index into Scene::textures
   float albedo = 1.0F;                 // scales the texture
   float draw_distance_m = 1e6F;        // small things are left out beyond
+  Label label = Label::kGround;
+};
+
+// A car, a bus, a person: it moves. A is its own frame: origin on the ground below its middle, x
+// forward, z up. The keys are in order of time; see sim/world/actor.h for what lies between them.
+struct ActorKey {
+  nav::TimeNs stamp = 0;
+  nav::Pose T_WA;
+};
+
+struct Actor {
+  std::string name;
+  std::vector<Mesh> meshes;  // in A instead of W
+  std::vector<ActorKey> path;
 };
 
 struct Scene {
   std::vector<Mesh> meshes;
+  std::vector<Actor> actors;
   std::vector<cv::Mat> textures;  // CV_8UC1, linear reflectance, sides powers of two; tiled
 };
 
