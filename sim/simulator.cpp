@@ -37,14 +37,16 @@ nav::Rig NominalRig(const SensorOptions& sensors) {
   return rig;
 }
 
-Simulator::Simulator(const SimulatorOptions& options, const RunKey& key) {
+Simulator::Simulator(const SimulatorOptions& options, const RunKey& key)
+    : events_(ScheduleDisturbances(options.disturbances, options.duration_s, key.seed, key.trial)) {
   const auto utc = sky::ParseUtc(options.site.utc);
   if (!utc) throw std::logic_error("Simulator: site.utc is no date: " + options.site.utc);
   track_ = std::make_unique<Track>(options.world.track);
   terrain_ =
       std::make_unique<Terrain>(options.world.terrain, *track_, SeedOf(key, "world/terrain"));
-  sky_ = std::make_unique<sky::WorldSky>(
-      options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"));
+  sky_ = std::make_unique<sky::WorldSky>(options.sky,
+                                         sky::ComputeSunArc(sky::SiteOf(options.site), *utc),
+                                         SeedOf(key, "sky/clouds"), CloudPassages(events_));
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
   if (options.sensors.stereo) {
     scene_ = BuildPlaza(options.world.plaza, *track_, *terrain_, SeedOf(key, "world/plaza"));
@@ -105,7 +107,8 @@ std::vector<Simulator::Emission> Simulator::Step() {
     due.emplace_back(reference_->Sample(now, reference_clock_.index++));
   }
   if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
-    due.emplace_back(FrameRequest{now.stamp, stereo_clock_.index++, now.T_WB});
+    due.emplace_back(
+        FrameRequest{now.stamp, stereo_clock_.index++, now.T_WB, ConditionsAt(events_, now.stamp)});
   }
   if (polarization_camera_ && polarization_camera_clock_.Due(now.stamp)) {
     due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++});

@@ -15,6 +15,7 @@
 
 #include "nav/api/calibration.h"
 #include "nav/api/measurements.h"
+#include "sim/disturbances/schedule.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/polarimeter.h"
 #include "sim/sensors/polarization_camera.h"
@@ -67,6 +68,8 @@ struct SimulatorOptions {
   WorldOptions world;
   VehicleOptions vehicle;
   SensorOptions sensors;
+  std::vector<DisturbanceOptions> disturbances;
+  double duration_s = 60.0;  // random disturbances begin within it
 };
 
 // Which run of a scenario: everything random depends on these two and nothing else.
@@ -80,6 +83,7 @@ struct FrameRequest {
   nav::TimeNs stamp = 0;
   std::uint64_t index = 0;
   nav::Pose T_WB;
+  CameraConditions conditions;
 };
 
 // A picture of the sky to be taken.
@@ -131,6 +135,7 @@ class Simulator {
   [[nodiscard]] static Clock ClockOf(double rate_hz);
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
+  std::vector<DisturbanceEvent> events_;
   std::unique_ptr<Track> track_;
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<sky::WorldSky> sky_;

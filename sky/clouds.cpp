@@ -34,6 +34,10 @@ constexpr double kTurnedThreshold = 1.5;  // of its channel: one patch of twenty
 constexpr double kTurnedRamp = 0.3;       // from upright to turned
 constexpr double kTurnedStrength = 0.5;   // of a turned patch over an upright one
 
+// A passing cloud, in parts of its radius.
+constexpr double kEdge = 0.3;        // over which its depth rises
+constexpr double kRaggedness = 0.1;  // of the edge, a sigma of the field
+
 // Air between clouds.
 constexpr double kAirLight = 0.5;         // deep among clouds, over the clear sky's own radiance
 constexpr double kAirPolarization = 0.1;  // of that light, seen across its way
@@ -111,7 +115,7 @@ CloudWeather WeatherOf(const std::string& preset) {
 }
 
 CloudLayer::CloudLayer(const CloudWeather& weather, const Eigen::Vector2d& wind_m_s,
-                       std::uint64_t seed)
+                       std::uint64_t seed, const std::vector<CloudPassage>& passages)
     : altitude_m_(weather.altitude_m),
       scale_m_(weather.scale_m),
       wind_m_s_(wind_m_s),
@@ -126,6 +130,14 @@ CloudLayer::CloudLayer(const CloudWeather& weather, const Eigen::Vector2d& wind_
   if (weather.cover > 0.0) {
     threshold_ = ThresholdOf(weather.cover);
     thick_depth_ = weather.optical_depth / MeanExcess(threshold_);
+  }
+  const double wind = wind_m_s.norm();
+  if (!passages.empty() && !(wind > 0.0)) {
+    throw std::logic_error("CloudLayer: no cloud passes without wind");
+  }
+  for (const CloudPassage& passage : passages) {
+    passing_.push_back(
+        {-wind_m_s * passage.middle_s, 0.5 * wind * passage.duration_s, passage.optical_depth});
   }
 }
 
@@ -150,6 +162,10 @@ CloudColumn CloudLayer::Look(const Eigen::Vector3d& ray_W, const Eigen::Vector3d
     column.air_light = kAirLight * (0.5 + excess / (1.0 + 2.0 * std::abs(excess)));
     const Eigen::Vector2d from(field[1], field[2]);
     column.air_lit_from = from / std::max(1.0, from.norm());  // no more polarized than at all
+  }
+  for (const Passing& cloud : passing_) {
+    const double inside = 1.0 - (place_m - cloud.center_m).norm() / cloud.radius_m;
+    depth += cloud.depth * Step((inside + kRaggedness * n) / kEdge);
   }
   if (depth > kThinnest) {
     column.optical_depth = depth;

@@ -32,6 +32,7 @@
 #include <complex>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "sky/lattice_noise.h"
 
@@ -49,6 +50,14 @@ struct CloudWeather {
 // clear, thin_cloud, few_clouds, many_clouds or overcast; throws std::invalid_argument otherwise.
 [[nodiscard]] CloudWeather WeatherOf(const std::string& preset);
 
+// A cloud that the wind carries over the world's origin at an instant. Its edge is ragged as the
+// layer's field is.
+struct CloudPassage {
+  double middle_s = 0.0;        // when it stands overhead
+  double duration_s = 20.0;     // from edge to edge
+  double optical_depth = 10.0;  // vertical, inside
+};
+
 // What a layer does along one ray. The default is no cloud.
 struct CloudColumn {
   double transmittance = 1.0;  // of light that meets no droplet on its way down the ray
@@ -61,17 +70,27 @@ struct CloudColumn {
 
 class CloudLayer {
  public:
-  // wind_m_s: east, north. seed: of the field.
-  CloudLayer(const CloudWeather& weather, const Eigen::Vector2d& wind_m_s, std::uint64_t seed);
+  // wind_m_s: east, north; not zero when there are passages. seed: of the field.
+  CloudLayer(const CloudWeather& weather, const Eigen::Vector2d& wind_m_s, std::uint64_t seed,
+             const std::vector<CloudPassage>& passages = {});
 
   // Neither veil nor cloud anywhere.
-  [[nodiscard]] bool empty() const { return veil_depth_ == 0.0 && thick_depth_ == 0.0; }
+  [[nodiscard]] bool empty() const {
+    return veil_depth_ == 0.0 && thick_depth_ == 0.0 && passing_.empty();
+  }
 
   // ray_W: unit vector at or above the horizon, ENU.
   [[nodiscard]] CloudColumn Look(const Eigen::Vector3d& ray_W, const Eigen::Vector3d& observer_W,
                                  double t_s) const;
 
  private:
+  // A disc in the layer, carried along with it.
+  struct Passing {
+    Eigen::Vector2d center_m;  // east, north; overhead of the origin at time zero would be (0, 0)
+    double radius_m;
+    double depth;
+  };
+
   double altitude_m_;
   double scale_m_;
   Eigen::Vector2d wind_m_s_;
@@ -79,6 +98,7 @@ class CloudLayer {
   double thick_depth_ = 0.0;  // optical depth per unit of the field above its threshold
   double threshold_ = 0.0;    // of the field, where thick cloud begins
   LatticeNoise field_;
+  std::vector<Passing> passing_;
 };
 
 // Radiance of a cloud's own light, relative to the clear zenith, were the cloud opaque.

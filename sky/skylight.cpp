@@ -40,8 +40,11 @@ CloudWeather WeatherOf(const SkyOptions& options) {
   return weather;
 }
 
-WorldSky::WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed)
-    : sun_(sun), clear_(options.clear), clouds_(WeatherOf(options), WindOf(options), seed) {
+WorldSky::WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed,
+                   const std::vector<CloudPassage>& passages)
+    : sun_(sun),
+      clear_(options.clear),
+      clouds_(WeatherOf(options), WindOf(options), seed, passages) {
   static_cast<void>(ClearSky(clear_, sun.start_W));  // complains of a bad model or sun at once
 }
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sky/clear_sky.h"
 #include "sky/clouds.h"
@@ -91,7 +92,8 @@ class SkyInstant {
 class WorldSky {
  public:
   // sun: where it goes, ENU. seed: of the cloud field.
-  WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed);
+  WorldSky(const SkyOptions& options, const SunArc& sun, std::uint64_t seed,
+           const std::vector<CloudPassage>& passages = {});
   // A sun that stands still. sun_W: unit vector towards it.
   WorldSky(const SkyOptions& options, const Eigen::Vector3d& sun_W, std::uint64_t seed)
       : WorldSky(options, SunArc{.start_W = sun_W}, seed) {}

@@ -56,6 +56,20 @@ TEST(CloudLayer, IsCarriedByTheWind) {
   }
 }
 
+// At 8 m/s a cloud that takes 20 s to pass is 160 m wide; its ragged edge, 0.3 of the radius with a
+// sigma of 0.1, is some 5 s of it.
+TEST(CloudLayer, LetsACloudPassWhenItIsToldTo) {
+  const CloudLayer layer(WeatherOf("clear"), {8.0, 0.0}, 1,
+                         {{.middle_s = 50.0, .duration_s = 20.0, .optical_depth = 4.0}});
+  EXPECT_FALSE(layer.empty());
+  EXPECT_EQ(layer.Look(kZenith, kOrigin, 30.0).transmittance, 1.0);
+  EXPECT_NEAR(layer.Look(kZenith, kOrigin, 50.0).optical_depth, 4.0, 1e-12);
+  EXPECT_EQ(layer.Look(kZenith, kOrigin, 70.0).transmittance, 1.0);
+  // Downwind it comes later: 400 m at 8 m/s are 50 s.
+  EXPECT_NEAR(layer.Look(kZenith, {400.0, 0.0, 0.0}, 100.0).optical_depth, 4.0, 1e-12);
+  EXPECT_THROW(CloudLayer(WeatherOf("clear"), {0.0, 0.0}, 1, {{}}), std::logic_error);
+}
+
 // A ray at 30 degrees meets twice the depth (less for the earth's curve, 0.1 percent here).
 TEST(CloudLayer, IsDeeperAlongASlantedRay) {
   const CloudLayer layer(WeatherOf("overcast"), {0.0, 0.0}, 2);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sky/mosaic.h"
+#include "tools/testbed/disturbance_checks.h"
 #include "tools/testbed/estimators.h"
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
@@ -148,6 +149,7 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckVehicle(document, scenario.vehicle);
   CheckRates(document, scenario.sensors);
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
+  CheckDisturbances(document, scenario);
   CheckEstimators(document, scenario);
   CheckCriteria(document, scenario);
   return scenario;

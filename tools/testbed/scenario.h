@@ -83,6 +83,7 @@ struct Scenario {
   sim::WorldOptions world;
   sim::VehicleOptions vehicle;
   sim::SensorOptions sensors;
+  std::vector<sim::DisturbanceOptions> disturbances;
   EstimatorOptions estimators;
   std::vector<Criterion> criteria;
 
@@ -98,6 +99,7 @@ struct Scenario {
     v("world", world);
     v("vehicle", vehicle);
     v("sensors", sensors);
+    v("disturbances", disturbances);
     v("estimators", estimators);
     v("criteria", criteria);
   }
