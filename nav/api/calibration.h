@@ -56,12 +56,22 @@ struct PolarizationCameraCalibration {
   double center_sigma_px = 0.0;  // of where the optical axis meets the sensor, along each side
 };
 
+// One sigma of a kind, as a data sheet has it; each axis by itself.
 struct ImuCalibration {
   Pose T_BI;
   double rate_hz = 0.0;
-  // Continuous-time white noise, one sigma.
+  // Continuous-time white noise: angle and velocity random walk.
   double gyro_noise_rad_s_sqrt_hz = 0.0;
   double accel_noise_m_s2_sqrt_hz = 0.0;
+  // Bias from turn-on to turn-on.
+  double gyro_bias_sigma_rad_s = 0.0;
+  double accel_bias_sigma_m_s2 = 0.0;
+  // In-run bias stability: the floor of the Allan deviation.
+  double gyro_bias_instability_rad_s = 0.0;
+  double accel_bias_instability_m_s2 = 0.0;
+  // Random walk of the bias: rate and acceleration random walk.
+  double gyro_bias_walk_rad_s_sqrt_s = 0.0;
+  double accel_bias_walk_m_s2_sqrt_s = 0.0;
 };
 
 // Whatever is absent, the vehicle does not carry.

@@ -19,7 +19,8 @@
 
 namespace polnav::nav {
 
-// Means over the interval that ends at the stamp, in the IMU's own axes (= B up to misalignment).
+// Means over the interval that ends at the stamp, in the IMU's own axes (= B up to misalignment);
+// docs/imu.md says how they integrate.
 struct ImuSample {
   TimeNs stamp = 0;
   Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();
@@ -75,6 +76,7 @@ struct ReferencePose {
   TimeNs stamp = 0;
   Pose T_WB;
   Eigen::Vector3d v_WB_m_s = Eigen::Vector3d::Zero();
+  bool gnss_aided = true;  // false: inertia alone, errors grow
 };
 
 using Measurement = std::variant<ImuSample, StereoImages, StereoFeatures, PolarizationSample,

@@ -95,6 +95,44 @@ TEST(Scenario, RefusesWhatCannotBeSimulated) {
             "of 0, 45, 90, 135 once, first row / second row, such as 90,45/135,0");
 }
 
+TEST(Scenario, AnImuPresetIsOverriddenByWhatIsWritten) {
+  const Scenario s = ParseScenario(
+      "name: a\nsensors:\n  imu:\n    gyro_bias_sigma_deg_s: 0.5\n    preset: icm20602\n",
+      "s.yaml");
+  EXPECT_EQ(s.sensors.imu->gyro_bias_sigma_deg_s, 0.5) << "whichever comes first";
+  EXPECT_EQ(s.sensors.imu->accel_bias_sigma_mg, 40.0);
+  const std::string resolved = ResolvedYaml(s);
+  const Scenario again = ParseScenario(resolved, "resolved.yaml");
+  EXPECT_EQ(ResolvedYaml(again), resolved);
+  EXPECT_EQ(again.sensors.imu->preset, "icm20602");
+  EXPECT_EQ(again.sensors.imu->gyro_bias_sigma_deg_s, 0.5);
+  EXPECT_EQ(ParseScenario(resolved, "r.yaml", {{"sensors.imu.gyro_bias_sigma_deg_s=2", "--set"}})
+                .sensors.imu->gyro_bias_sigma_deg_s,
+            2.0);
+}
+
+TEST(Scenario, RefusesAnImuThatItDoesNotKnow) {
+  EXPECT_EQ(ErrorOf("name: a\nsensors:\n  imu:\n    preset: icm20601\n"),
+            "s.yaml:4: sensors.imu.preset: 'icm20601' is not one of: adis16475_2, icm20602, "
+            "span_cpt, hg4930, perfect; did you mean 'icm20602'?");
+  EXPECT_EQ(ErrorOf("name: a\nsensors:\n  imu:\n    temperature: {end_deg_c: 300}\n"),
+            "s.yaml:4: sensors.imu.temperature.end_deg_c: 300 is out of range, [-60, 125]");
+}
+
+TEST(Scenario, RefusesOutagesThatCannotHappen) {
+  const std::string head = "name: a\nduration_s: 100\nsensors:\n  reference:\n    outages:\n";
+  EXPECT_EQ(ErrorOf(head + "      - {start_s: 10, duration_s: 5}\n      - {start_s: 20}\n"),
+            "no error");
+  EXPECT_EQ(ErrorOf(head + "      - {start_s: 100}\n"),
+            "s.yaml:6: sensors.reference.outages.0.start_s: 100 s is not before the run's end, "
+            "100 s");
+  EXPECT_EQ(ErrorOf(head + "      - {start_s: 10, duration_s: 20}\n      - {start_s: 25}\n"),
+            "s.yaml:7: sensors.reference.outages.1.start_s: 25 s is before the end of the outage "
+            "above, 30 s: list them in order, without overlap");
+  EXPECT_EQ(ErrorOf(head + "      - {start_s: 10, duration_s: 0}\n"),
+            "s.yaml:6: sensors.reference.outages.0.duration_s: 0 is out of range, [0.001, 86400]");
+}
+
 TEST(Scenario, RefusesCriteriaThatCannotBeJudged) {
   EXPECT_EQ(ErrorWith("criteria.0.metric=estimators.stereo.heading_deg.rmes"),
             "--set criteria.0.metric=estimators.stereo.heading_deg.rmes: criteria.0.metric: "

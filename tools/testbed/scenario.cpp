@@ -65,6 +65,29 @@ void CheckPolarizationCamera(const YamlDocument& document,
   }
 }
 
+void CheckOutages(const YamlDocument& document, const Scenario& scenario) {
+  if (!scenario.sensors.reference) return;
+  double free_from_s = 0.0;
+  const auto& outages = scenario.sensors.reference->outages;
+  for (std::size_t i = 0; i < outages.size(); ++i) {
+    const std::string key = fmt::format("sensors.reference.outages.{}.start_s", i);
+    // --duration cuts a run short on purpose: what would have come later does not come.
+    const bool cut = document.overrides.contains("duration_s");
+    if (outages[i].start_s >= scenario.duration_s && !cut) {
+      FailAt(document, key,
+             fmt::format("{} s is not before the run's end, {} s", outages[i].start_s,
+                         scenario.duration_s));
+    }
+    if (outages[i].start_s < free_from_s) {
+      FailAt(document, key,
+             fmt::format("{} s is before the end of the outage above, {} s: list them in order, "
+                         "without overlap",
+                         outages[i].start_s, free_from_s));
+    }
+    free_from_s = outages[i].start_s + outages[i].duration_s;
+  }
+}
+
 const EstimatorInfo& FindEstimator(const YamlDocument& document, const std::string& key,
                                    const std::string& name) {
   if (const EstimatorInfo* const info = FindInfo(name)) return *info;
@@ -150,6 +173,7 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckRates(document, scenario.sensors);
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckDisturbances(document, scenario);
+  CheckOutages(document, scenario);
   CheckEstimators(document, scenario);
   CheckCriteria(document, scenario);
   return scenario;

@@ -54,6 +54,7 @@ struct Hasher {
   void operator()(const nav::ReferencePose& m) const {
     HashPose(m.T_WB, hash);
     HashVector(m.v_WB_m_s, hash);
+    hash.UpdateValue(m.gnss_aided);
   }
 };
 

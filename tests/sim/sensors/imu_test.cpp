@@ -13,21 +13,7 @@ namespace {
 
 constexpr nav::TimeNs kStep = 10'000'000;  // 100 Hz
 
-ImuOptions Perfect() {
-  ImuOptions options;
-  options.gyro_noise_deg_s_sqrt_hz = 0.0;
-  options.gyro_bias_sigma_deg_s = 0.0;
-  options.gyro_bias_walk_deg_s_sqrt_s = 0.0;
-  options.gyro_scale_sigma = 0.0;
-  options.gyro_resolution_deg_s = 0.0;
-  options.accel_noise_mg_sqrt_hz = 0.0;
-  options.accel_bias_sigma_mg = 0.0;
-  options.accel_bias_walk_mg_sqrt_s = 0.0;
-  options.accel_scale_sigma = 0.0;
-  options.accel_resolution_mg = 0.0;
-  options.misalignment_sigma_deg = 0.0;
-  return options;
-}
+ImuOptions Perfect() { return ImuPreset("perfect"); }
 
 Truth AtRest(nav::TimeNs stamp, const Eigen::Quaterniond& q_WB = Eigen::Quaterniond::Identity()) {
   Truth truth;
