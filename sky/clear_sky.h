@@ -7,7 +7,7 @@
 // Each has Look<T>(sun, up) -> SkyStokes<T>, where sun and up are unit vectors by their components
 // along axis 1, axis 2 and the ray. They are functions of the ray by these alone, so they hold
 // about any axes across the ray: those of RayAxes, or a pixel's. T is double or ceres::Jet.
-// Preparing hazy takes some 0.2 ms, a ray of it less than a microsecond: prepare once an instant.
+// Preparing hazy takes some 0.6 ms, a ray of it less than a microsecond: prepare once an instant.
 // Twilight and night: with the sun at or below the horizon all three are finite and continuous, the
 // pattern moving on with the sun. What is missing is the earth's shadow and the night's own light;
 // radiance stays relative to the zenith.

@@ -12,18 +12,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kOrders = 12;                 // of scattering, at most
+constexpr int kMostOrders = 15;             // of scattering
 constexpr double kFaintest = 1e-6;          // light that is not followed further, over the sun's
 constexpr int kHazeProfilePower = 4;        // scale height of air over that of haze
 constexpr double kDepolarization = 0.0279;  // of air
 
-// Of scattering by air, what goes by the tensor; the rest is even and unpolarized.
-constexpr double kTensorShare = (1.0 - kDepolarization) / (1.0 + 0.5 * kDepolarization);
-
 // Gauss and Legendre on (0, 1): sines of elevation on which light is followed, down and up.
 constexpr int kStreams = 8;
 using Streams = Eigen::Array<double, kStreams, 1>;
-using Stokes = Eigen::Array<double, kStreams, 3>;  // I, Q, U along the streams
 const Streams kSines = (Streams() << 0.01985507175123188, 0.10166676129318664, 0.23723379504183550,
                         0.40828267875217510, 0.59171732124782490, 0.76276620495816450,
                         0.89833323870681336, 0.98014492824876812)
@@ -33,89 +29,76 @@ const Streams kWeights = (Streams() << 0.05061426814518813, 0.11119051722668724,
                           0.15685332293894364, 0.11119051722668724, 0.05061426814518813)
                              .finished();
 
-// A Legendre moment of haze's scattering without the forward peak.
-double WithoutPeak(double moment) { return (moment - haze::kForward) / (1.0 - haze::kForward); }
+// What each order's moment at each level is multiplied by, for the four kinds of HazeOptics.
+struct Kernel {
+  Eigen::ArrayXXd ii, iq, qq, uu;
 
-double Moment(int l) {
-  return l == 0 ? 1.0 : WithoutPeak(l == 1 ? haze::kMoment1 : haze::kMoment2);
-}
-
-// P_l^m over m!, and what stands before the product of two of them in the addition theorem.
-double Legendre(int m, int l, double sine) {
-  const double cosine2 = std::max(0.0, 1.0 - sine * sine);
-  if (m == 2) return cosine2;
-  if (m == 1) return std::sqrt(cosine2) * (l == 1 ? 1.0 : sine);
-  return l == 0 ? 1.0 : l == 1 ? sine : 1.5 * sine * sine - 0.5;
-}
-double LegendreWeight(int m, int l) {
-  constexpr double kTable[3][3] = {{1.0, 3.0, 5.0}, {0.0, 3.0, 15.0}, {0.0, 0.0, 3.75}};
-  return kTable[m][l];
-}
-
-// What a unit part of the field's tensor shows along the streams. Parts: mode 0 (xx + yy) / 2 and
-// zz; mode 1 xz; mode 2 (xx - yy) / 2. The same numbers weigh the streams in the part's moment.
-int Parts(int m) { return m == 0 ? 2 : 1; }
-Stokes Shown(int m, int part, const Streams& sine) {
-  const Streams cosine2 = 1.0 - sine.square();
-  const Streams cosine = cosine2.sqrt();
-  Stokes shown;
-  if (m == 0 && part == 0) shown << 1.0 + sine.square(), -cosine2, Streams::Zero();
-  if (m == 0 && part == 1) shown << cosine2, cosine2, Streams::Zero();
-  if (m == 1) shown << -2.0 * sine * cosine, -2.0 * sine * cosine, 2.0 * cosine;
-  if (m == 2) shown << -cosine2, 1.0 + sine.square(), -2.0 * sine;
-  return shown;
-}
-double MomentNorm(int m, int part) { return m == 0 ? (part == 0 ? 0.5 * pi : pi) : 0.25 * pi; }
-
-// The sun's own light.
-HazeMoments Sunlight(int m, const LitAir& air) {
-  const double c = air.cosine;
-  HazeMoments sun;
-  if (m == 0) sun.tensor = {(0.5 - 0.25 * c * c) * air.sun, 0.5 * c * c * air.sun};
-  if (m == 1) sun.tensor[0] = -0.5 * c * air.sine * air.sun;
-  if (m == 2) sun.tensor[0] = -0.25 * c * c * air.sun;
-  for (int l = m; l < 3; ++l) sun.light[l] = Legendre(m, l, air.sine) * air.sun;
-  return sun;
-}
-
-HazeMoments Glint(int m, const LitAir& air, const std::vector<GlintRay>& rays) {
-  HazeMoments glint;
-  for (const GlintRay& ray : rays) {
-    const HazeProfile fade = GlintAt(ray, air);
-    const Eigen::Matrix3d& e = ray.tensor;
-    if (m == 0) {
-      glint.tensor[0] += 0.5 * (e(0, 0) + e(1, 1)) * fade;
-      glint.tensor[1] += e(2, 2) * fade;
-    } else {
-      glint.tensor[0] += (m == 1 ? e(0, 2) : 0.5 * (e(0, 0) - e(1, 1))) * fade;
-    }
-    const double flat = ray.from.head<2>().norm();
-    const double azimuth =
-        flat > 1e-9 ? std::acos(std::clamp(ray.from.x() / flat, -1.0, 1.0)) : 0.0;
-    for (int l = m; l < 3; ++l) {
-      glint.light[l] +=
-          ray.intensity() * std::cos(m * azimuth) * Legendre(m, l, ray.from.z()) * fade;
-    }
+  [[nodiscard]] HazeLight operator()(const HazeLight& moments) const {
+    const auto i = moments.i.array();
+    const auto q = moments.q.array();
+    return {ii * i + iq * q, iq * i + qq * q, uu * moments.u.array()};
   }
-  return glint;
+};
+
+// Half the moments of scattering: fields are sums over m of cosines, of which each is half.
+Kernel ByHaze(int m, const LitAir& air) {
+  const auto half = [&](const HazeMoments& moments) -> Eigen::ArrayXXd {
+    const Eigen::Map<const Eigen::VectorXd> all(moments.data(), kHazeOrders + 1);
+    return 0.5 * all.tail(kHazeOrders + 1 - m) * air.haze.matrix().transpose();
+  };
+  return {half(air.optics.ii), half(air.optics.iq), half(air.optics.qq), half(air.optics.uu)};
 }
 
-// Scatters one mode of light once more.
-class Scattering {
+// Rayleigh's scattering: p11 = 1 + share / 2 P2, and what goes with it.
+Kernel ByAir(int m, const LitAir& air) {
+  const double share = (1.0 - kDepolarization) / (1.0 + 0.5 * kDepolarization);
+  HazeMoments ii{1.0, 0.0, 0.5 * share};
+  HazeMoments iq{0.0, 0.0, -0.5 * std::sqrt(6.0) * share};
+  HazeMoments qq{0.0, 0.0, 3.0 * share};
+  const auto half = [&](const HazeMoments& moments) -> Eigen::ArrayXXd {
+    const Eigen::Map<const Eigen::VectorXd> all(moments.data(), kHazeOrders + 1);
+    return 0.5 * all.tail(kHazeOrders + 1 - m) * air.molecules.matrix().transpose();
+  };
+  return {half(ii), half(iq), half(qq), half({})};
+}
+
+// A ray's share in one mode, over its intensity.
+double ModeOfRay(int m) { return (m == 0 ? 0.5 : 1.0) / pi; }
+
+HazeLight Sunlight(int m, const LitAir& air) {
+  const HazeBasis basis(m, Eigen::ArrayXd::Constant(1, air.sine));
+  const Eigen::RowVectorXd light = ModeOfRay(m) * air.sun.matrix().transpose();
+  const Eigen::RowVectorXd none = Eigen::RowVectorXd::Zero(kHazeLevels);
+  return basis.Moments({light, none, none});
+}
+
+HazeLight Glint(int m, const LitAir& air, const std::vector<GlintRay>& rays) {
+  const auto count = static_cast<Eigen::Index>(rays.size());
+  Eigen::ArrayXd sines(count);
+  HazeLight light{Eigen::MatrixXd(count, kHazeLevels), Eigen::MatrixXd(count, kHazeLevels),
+                  Eigen::MatrixXd(count, kHazeLevels)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const GlintRay& ray = rays[static_cast<std::size_t>(k)];
+    sines[k] = ray.from.z();
+    const double azimuth = std::atan2(ray.from.y(), ray.from.x());
+    const Eigen::Vector3d stokes = ray.Stokes();
+    const HazeProfile fade = ModeOfRay(m) * air.sun[kHazeLevels - 1] *
+                             ((air.depth - air.depth[kHazeLevels - 1]) / ray.up).exp();
+    light.i.row(k) = stokes[0] * std::cos(m * azimuth) * fade;
+    light.q.row(k) = stokes[1] * std::cos(m * azimuth) * fade;
+    light.u.row(k) = stokes[2] * std::sin(m * azimuth) * fade;
+  }
+  return HazeBasis(m, sines).Moments(light);
+}
+
+// Follows one mode of light from scattering to scattering.
+class Transfer {
  public:
-  Scattering(int m, const LitAir& air) : m_(m), air_(air) {
-    for (int part = 0; part < Parts(m); ++part) {
-      down_[part] = Shown(m, part, kSines);
-      up_[part] = Shown(m, part, -kSines);
-    }
-    for (int l = m; l < 3; ++l) {
-      down_light_[l] = kSines.unaryExpr([=](double sine) { return Legendre(m, l, sine); });
-      up_light_[l] = kSines.unaryExpr([=](double sine) { return Legendre(m, l, -sine); });
-    }
+  Transfer(int m, const LitAir& air) : m_(m), air_(air), down_(m, kSines), up_(m, -kSines) {
     for (int j = 0; j + 1 < kHazeLevels; ++j) {
-      const Streams x = (air.depth[j + 1] - air.depth[j]) / kSines;
-      through_[j] = (-x).exp();
-      mean_[j] = (1.0 - through_[j]) / x;
+      const Streams x = ((air.depth[j + 1] - air.depth[j]) / kSines).max(1e-12);
+      through_.col(j) = (-x).exp();
+      mean_.col(j) = (1.0 - through_.col(j).array()) / x;
     }
     const Streams raised = (kSines.square() + haze::kSlopeVariance).sqrt().min(1.0);
     for (int k = 0; k < kStreams; ++k) {
@@ -124,152 +107,124 @@ class Scattering {
     }
   }
 
-  // sunlit: irradiance of the sea by what lit the air before it was scattered.
-  [[nodiscard]] HazeMoments Next(const HazeMoments& light, double sunlit) const {
-    HazeMoments next;
-    Stokes ray = Stokes::Zero();
-    Stokes source = Source(light, down_, down_light_, 0);
-    Collect(ray, down_, down_light_, 0, next);
-    for (int j = 1; j < kHazeLevels; ++j) {
-      const Stokes to = Source(light, down_, down_light_, j);
-      ray = Through(ray, source, to, j - 1);
-      source = to;
-      Collect(ray, down_, down_light_, j, next);
-    }
-    ray = Mirrored(ray, sunlit);
-    source = Source(light, up_, up_light_, kHazeLevels - 1);
-    Collect(ray, up_, up_light_, kHazeLevels - 1, next);
-    for (int j = kHazeLevels - 2; j >= 0; --j) {
-      const Stokes to = Source(light, up_, up_light_, j);
-      ray = Through(ray, source, to, j);
-      source = to;
-      Collect(ray, up_, up_light_, j, next);
-    }
-    return next;
+  // Moments of light that was scattered once more, from those of what the levels send out.
+  // sunlit: irradiance of the sea by what lit the air before.
+  [[nodiscard]] HazeLight Next(const HazeLight& source, double sunlit) const {
+    const HazeLight falling = Gather(down_.Shown(source), nullptr, true);
+    const HazeLight start = Mirrored(falling, sunlit);
+    const HazeLight rising = Gather(up_.Shown(source), &start, false);
+    HazeLight moments = down_.Moments(Weighted(falling));
+    moments += up_.Moments(Weighted(rising));
+    return moments;
   }
 
  private:
-  using Shows = std::array<Stokes, 2>;
-  using Lights = std::array<Streams, 3>;
-
-  [[nodiscard]] Stokes Source(const HazeMoments& light, const Shows& shown, const Lights& legendre,
-                              int j) const {
-    const double by_air = TensorByAir() * air_.molecules[j];
-    const double by_haze = TensorByHaze() * air_.haze[j];
-    Stokes source = Stokes::Zero();
-    for (int part = 0; part < Parts(m_); ++part) {
-      source.col(0) += by_air * light.tensor[part][j] * shown[part].col(0);
-      source.rightCols<2>() +=
-          (by_air * light.tensor[part][j] + by_haze * light.polarized[part][j]) *
-          shown[part].rightCols<2>();
-    }
-    for (int l = m_; l < 3; ++l) {
-      double by_both = LightByHaze(m_, l) * air_.haze[j];
-      if (l == 0) by_both += EvenByAir() * air_.molecules[j];
-      source.col(0) += by_both * light.light[l][j] * legendre[l];
-    }
-    return source;
+  // Along the streams through layers whose sources are linear between their ends.
+  [[nodiscard]] HazeLight Gather(const HazeLight& source, const HazeLight* start,
+                                 bool falling) const {
+    const auto gather = [&](const Eigen::MatrixXd& from, const Eigen::MatrixXd* first) {
+      Eigen::MatrixXd light(kStreams, kHazeLevels);
+      Streams ray = first != nullptr ? Streams(first->col(0).array()) : Streams::Zero();
+      const int begin = falling ? 0 : kHazeLevels - 1;
+      const int step = falling ? 1 : -1;
+      light.col(begin) = ray;
+      for (int j = begin + step; j >= 0 && j < kHazeLevels; j += step) {
+        const auto through = through_.col(falling ? j - 1 : j).array();
+        const auto mean = mean_.col(falling ? j - 1 : j).array();
+        ray = ray * through + from.col(j - step).array() * (mean - through) +
+              from.col(j).array() * (1.0 - mean);
+        light.col(j) = ray;
+      }
+      return light;
+    };
+    return {gather(source.i, start != nullptr ? &start->i : nullptr),
+            gather(source.q, start != nullptr ? &start->q : nullptr),
+            gather(source.u, start != nullptr ? &start->u : nullptr)};
   }
 
-  // Through layer j, whose source is linear between its ends.
-  [[nodiscard]] Stokes Through(const Stokes& ray, const Stokes& from, const Stokes& to,
-                               int j) const {
-    return ray.colwise() * through_[j] + from.colwise() * (mean_[j] - through_[j]) +
-           to.colwise() * (1.0 - mean_[j]);
+  [[nodiscard]] static HazeLight Weighted(const HazeLight& light) {
+    const auto weights = kWeights.matrix().asDiagonal();
+    return {weights * light.i, weights * light.q, weights * light.u};
   }
 
-  void Collect(const Stokes& ray, const Shows& shown, const Lights& legendre, int j,
-               HazeMoments& into) const {
-    for (int part = 0; part < Parts(m_); ++part) {
-      const Eigen::Array3d sums =
-          ((ray * shown[part]).colwise() * kWeights).colwise().sum().transpose();
-      into.tensor[part][j] += MomentNorm(m_, part) * sums.sum();
-      into.polarized[part][j] += MomentNorm(m_, part) * (sums[1] + sums[2]);
-    }
-    for (int l = m_; l < 3; ++l) {
-      into.light[l][j] += (m_ == 0 ? 2.0 : 1.0) * pi * (ray.col(0) * legendre[l] * kWeights).sum();
-    }
-  }
-
-  [[nodiscard]] Stokes Mirrored(const Stokes& ray, double sunlit) const {
-    const Streams across = 0.5 * mirror_.col(0) * (ray.col(0) - ray.col(1));
-    const Streams along = 0.5 * mirror_.col(1) * (ray.col(0) + ray.col(1));
-    Stokes up;
-    up << along + across, along - across, mirror_.col(2) * ray.col(2);
+  // What the sea sends up of what falls on it.
+  [[nodiscard]] HazeLight Mirrored(const HazeLight& falling, double sunlit) const {
+    const Streams i = falling.i.rightCols<1>();
+    const Streams q = falling.q.rightCols<1>();
+    const Streams u = falling.u.rightCols<1>();
+    const Streams across = 0.5 * mirror_.col(0) * (i - q);
+    const Streams along = 0.5 * mirror_.col(1) * (i + q);
+    Streams up = along + across;
     if (m_ == 0) {
-      const double lit = sunlit + 2.0 * pi * (ray.col(0) * kSines * kWeights).sum();
-      up.col(0) += air_.water_albedo * lit / pi;
+      const double lit = sunlit + 2.0 * pi * (i * kSines * kWeights).sum();
+      up += air_.water_albedo * lit / pi;
     }
-    return up;
+    return {up, along - across, mirror_.col(2) * u};
   }
 
   int m_;
   const LitAir& air_;
-  Shows down_, up_;
-  Lights down_light_, up_light_;
-  std::array<Streams, kHazeLevels - 1> through_, mean_;
+  HazeBasis down_, up_;
+  Eigen::Matrix<double, kStreams, kHazeLevels - 1> through_, mean_;
   Eigen::Array<double, kStreams, 3> mirror_;  // across, along, both
 };
 
 }  // namespace
 
-double TensorByAir() { return kTensorShare * 3.0 / (8.0 * pi); }
-double EvenByAir() { return (1.0 - kTensorShare) / (4.0 * pi); }
-double TensorByHaze() { return WithoutPeak(haze::kPolarized) * 5.0 / (8.0 * pi); }
-double LightByHaze(int m, int l) { return Moment(l) * LegendreWeight(m, l) / (4.0 * pi); }
-
 HazeAir HazeAirOf(double aot, double wavelength_nm) {
   const double um2 = wavelength_nm * wavelength_nm * 1e-6;
   // Molecules at sea level [Hansen1974].
   const double molecules = 0.008569 / (um2 * um2) * (1.0 + 0.0113 / um2 + 0.00013 / (um2 * um2));
+  const HazeOptics optics = HazeOpticsAt(wavelength_nm);
   return {
       .molecules = haze::kMolecules * molecules,
-      .haze = aot * std::pow(wavelength_nm / 550.0, -haze::kAngstrom),
-      .water_albedo = haze::kWaterAlbedo450 * std::pow(wavelength_nm / 450.0, haze::kWaterPower)};
+      .haze = aot * optics.extinction,
+      .water_albedo = haze::kWaterAlbedo450 * std::pow(wavelength_nm / 450.0, haze::kWaterPower),
+      .optics = optics};
 }
 
 LitAir Light(const HazeAir& air, double sun_elevation_rad) {
   const HazeProfile pressure = HazeProfile::LinSpaced(0.0, 1.0);  // over the ground's
-  const double kept = 1.0 - haze::kAlbedo * haze::kForward;
+  const HazeOptics& optics = air.optics;
+  const double kept = 1.0 - optics.albedo * optics.forward;
   const HazeProfile slope =
       air.haze * kept * kHazeProfilePower * pressure.pow(kHazeProfilePower - 1);
   LitAir lit{.sine = std::sin(sun_elevation_rad),
              .cosine = std::cos(sun_elevation_rad),
              .water_albedo = air.water_albedo,
+             .optics = optics,
              .depth = air.molecules * pressure + air.haze * kept * pressure.pow(kHazeProfilePower),
              .molecules = air.molecules / (air.molecules + slope),
              .haze = {},
              .sun = {}};
-  lit.haze = (1.0 - lit.molecules) * haze::kAlbedo * (1.0 - haze::kForward) / kept;
+  lit.haze = (1.0 - lit.molecules) * optics.albedo * (1.0 - optics.forward) / kept;
   lit.sun = (-lit.depth / lit.sine).exp();
   return lit;
 }
 
-// What is left of the ray at each level, on its way up.
-HazeProfile GlintAt(const GlintRay& ray, const LitAir& air) {
-  const double ground = air.depth[kHazeLevels - 1];
-  return air.sun[kHazeLevels - 1] * ((air.depth - ground) / ray.up).exp();
-}
-
-HazeMoments& HazeMoments::operator+=(const HazeMoments& other) {
-  for (std::size_t i = 0; i < tensor.size(); ++i) tensor[i] += other.tensor[i];
-  for (std::size_t i = 0; i < polarized.size(); ++i) polarized[i] += other.polarized[i];
-  for (std::size_t i = 0; i < light.size(); ++i) light[i] += other.light[i];
-  return *this;
-}
-
-ScatteredMode Scatter(int m, const LitAir& air, const std::vector<GlintRay>& glint) {
-  const Scattering scattering(m, air);
-  ScatteredMode mode;
-  mode.first = Sunlight(m, air);
-  mode.first += Glint(m, air, glint);
-  HazeMoments light = mode.first;
-  for (int order = 0; order < kOrders; ++order) {
-    light = scattering.Next(light, order == 0 ? air.sine * air.sun[kHazeLevels - 1] : 0.0);
-    mode.orders += light;
-    if (light.light[m].abs().maxCoeff() < kFaintest) break;
+HazeLight Scatter(int m, const LitAir& air, const std::vector<GlintRay>& glint) {
+  const Transfer transfer(m, air);
+  const Kernel by_air = ByAir(m, air);
+  const Kernel by_haze = ByHaze(m, air);
+  const HazeLight sunlight = Sunlight(m, air);
+  HazeLight light = Glint(m, air, glint);
+  HazeLight sent = by_air(sunlight);
+  HazeLight source = by_haze(sunlight);
+  source += sent;
+  const HazeLight of_glint = by_air(light);
+  sent += of_glint;
+  source += of_glint;
+  const HazeLight of_glint_by_haze = by_haze(light);
+  sent += of_glint_by_haze;
+  source += of_glint_by_haze;
+  for (int order = 0; order < kMostOrders; ++order) {
+    light = transfer.Next(source, order == 0 ? air.sine * air.sun[kHazeLevels - 1] : 0.0);
+    source = by_air(light);
+    source += by_haze(light);
+    sent += source;
+    if (light.i.cwiseAbs().maxCoeff() < kFaintest) break;
   }
-  return mode;
+  return sent;
 }
 
 }  // namespace polnav::sky

@@ -1,6 +1,9 @@
 #include "sky/hazy.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "sky/haze_field.h"
@@ -12,54 +15,122 @@ namespace {
 using std::numbers::pi;
 using K = HazyCoefficients;
 
-constexpr int kNodes = K::kDegree + 1;
+constexpr int kPowers = K::kDegree + 1;
+constexpr int kElevations = 12;  // at which the field is asked, at Chebyshev's nodes of z
+constexpr int kAzimuths = 9;     // at each, over half a turn
+constexpr int kRays = kElevations * kAzimuths;
+constexpr int kTermsOfI = K::kA0;
+constexpr int kTermsOfQu = K::kOnce - K::kA0;
 
-// The field's functions as HazyStokes needs them: i1, i2 of cos_sun instead of the haze_field's x,
-// x = cos_sun - sin(sun) mu.
-std::array<double, K::kFunctions> Functions(const HazeField& field, double mu, double sun_sine) {
-  const HazeRay ray = field.Along(mu);
-  const double shift = sun_sine * mu;
-  const double flat2 = (1.0 - sun_sine * sun_sine) * (1.0 - mu * mu);
-  return {ray.i0 - ray.i1 * shift + ray.i2 * (2.0 * shift * shift - flat2),
-          ray.i1 - 4.0 * ray.i2 * shift,
-          2.0 * ray.i2,
-          ray.a,
-          2.0 * ray.b,
-          ray.c,
-          ray.sun,
-          ray.glint};
+double NodeOf(int elevation) { return std::cos(pi * (elevation + 0.5) / kElevations); }
+
+double SineAt(double z, const K& k) {
+  const double y = (1.0 + z) / k.stretch;
+  return std::min(1.0, k.bend * y / (1.0 - y));
 }
 
-// Chebyshev polynomials' powers: [n][power].
-std::array<std::array<double, kNodes>, kNodes> ChebyshevPowers() {
-  std::array<std::array<double, kNodes>, kNodes> t{};
-  t[0][0] = 1.0;
-  t[1][1] = 1.0;
-  for (int n = 2; n < kNodes; ++n) {
-    for (int power = 0; power < kNodes; ++power) {
-      t[n][power] = (power > 0 ? 2.0 * t[n - 1][power - 1] : 0.0) - t[n - 2][power];
-    }
-  }
+// Chebyshev polynomials at z.
+Eigen::RowVector<double, kPowers> Chebyshev(double z) {
+  Eigen::RowVector<double, kPowers> t;
+  t[0] = 1.0;
+  t[1] = z;
+  for (int n = 2; n < kPowers; ++n) t[n] = 2.0 * z * t[n - 1] - t[n - 2];
   return t;
 }
 
-// Interpolates at Chebyshev's nodes.
-void Interpolate(const HazeField& field, double sun_sine, K& k) {
-  static const auto kPowers = ChebyshevPowers();
-  for (int node = 0; node < kNodes; ++node) {
-    const double angle = pi * (node + 0.5) / kNodes;
-    const double y = (1.0 + std::cos(angle)) / k.stretch;
-    const double mu = std::min(1.0, k.bend * y / (1.0 - y));
-    const auto values = Functions(field, mu, sun_sine);
-    for (int n = 0; n < kNodes; ++n) {
-      const double weight = (n == 0 ? 1.0 : 2.0) / kNodes * std::cos(n * angle);
-      for (int power = 0; power <= n; ++power) {
-        for (int i = 0; i < K::kFunctions; ++i) {
-          k.of_z[i][kNodes - 1 - power] += weight * kPowers[n][power] * values[i];
-        }
-      }
+// Least squares of sums over terms times polynomials of z; rows: rays. Near the zenith terms are
+// not known apart, only their sum is: the small ridge then takes small coefficients. The result has
+// a term's Chebyshev coefficients in each row.
+template <int Terms>
+Eigen::Matrix<double, Terms, kPowers, Eigen::RowMajor> Fit(const Eigen::MatrixXd& terms,
+                                                           const Eigen::VectorXd& values) {
+  constexpr double kRidge = 1e-7;
+  constexpr int kUnknowns = Terms * kPowers;
+  Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> rows(terms.rows(), kUnknowns);
+  for (Eigen::Index ray = 0; ray < terms.rows(); ++ray) {
+    const auto at_z = Chebyshev(NodeOf(static_cast<int>(ray % kRays / kAzimuths)));
+    for (int n = 0; n < Terms; ++n) {
+      rows.row(ray).template segment<kPowers>(n * kPowers) = terms(ray, n) * at_z;
     }
   }
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(kUnknowns, kUnknowns);
+  normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  normal.diagonal().array() += kRidge * normal.trace();
+  const Eigen::VectorXd right = rows.transpose() * values;
+  const Eigen::VectorXd solved = normal.selfadjointView<Eigen::Lower>().llt().solve(right);
+  return Eigen::Map<const Eigen::Matrix<double, Terms, kPowers, Eigen::RowMajor>>(solved.data());
+}
+
+// What HazyStokes needs of the field, by all rays in units of their radiance: relative errors
+// count.
+struct Sampled {
+  Eigen::MatrixXd of_i{kRays, kTermsOfI}, of_qu{2 * kRays, kTermsOfQu};
+  Eigen::VectorXd i{kRays}, qu{2 * kRays};
+  Eigen::Vector<double, kElevations> once;
+};
+
+void Sample(const HazeRay& ray, double mu, double sun_rad, int elevation, Sampled& to) {
+  const double flat = std::sqrt(1.0 - mu * mu);
+  for (int n = 0; n < kAzimuths; ++n) {
+    const double azimuth = pi * (n + 0.5) / kAzimuths;
+    double i = 0.0, q = 0.0, u = 0.0;
+    for (std::size_t m = 0; m < kHazeModes; ++m) {
+      const double turn = static_cast<double>(m) * azimuth;
+      i += ray.i[m] * std::cos(turn);
+      q += ray.q[m] * std::cos(turn);
+      u += ray.u[m] * std::sin(turn);
+    }
+    const double flat_sun = std::cos(sun_rad) * std::cos(azimuth);
+    const double c = flat_sun * flat + std::sin(sun_rad) * mu;
+    const std::complex<double> s(flat_sun * mu - std::sin(sun_rad) * flat,
+                                 -std::cos(sun_rad) * std::sin(azimuth));
+    const std::complex<double> ss = s * s / i;
+    const std::complex<double> sz = -flat * s / i;
+    const double zz = flat * flat / i;
+    const int row = elevation * kAzimuths + n;
+    to.i[row] = 1.0;
+    to.of_i.row(row) << 1.0 / i, c / i, c * c / i, c * c * c / i, c * c * c * c / i;
+    to.qu[row] = q / i;
+    to.of_qu.row(row) << ss.real(), c * ss.real(), c * c * ss.real(), sz.real(), c * sz.real(), zz,
+        c * zz;
+    to.qu[row + kRays] = u / i;
+    to.of_qu.row(row + kRays) << ss.imag(), c * ss.imag(), c * c * ss.imag(), sz.imag(),
+        c * sz.imag(), 0.0, 0.0;
+  }
+  to.once[elevation] = ray.sun;
+}
+
+// From Chebyshev's polynomials to powers, highest first.
+std::array<double, kPowers> PowersOf(const Eigen::RowVector<double, kPowers>& chebyshev) {
+  std::array<std::array<double, kPowers>, kPowers> t{};  // polynomial, power
+  t[0][0] = 1.0;
+  t[1][1] = 1.0;
+  std::array<double, kPowers> sum{};
+  for (std::size_t n = 0; n < kPowers; ++n) {
+    for (std::size_t power = 0; power <= n; ++power) {
+      if (n > 1) t[n][power] = (power > 0 ? 2.0 * t[n - 1][power - 1] : 0.0) - t[n - 2][power];
+      sum[kPowers - 1 - power] += chebyshev[static_cast<Eigen::Index>(n)] * t[n][power];
+    }
+  }
+  return sum;
+}
+
+void Prepare(const HazeField& field, K& k) {
+  Sampled sampled;
+  Eigen::Matrix<double, kElevations, kPowers> at_nodes;
+  for (int elevation = 0; elevation < kElevations; ++elevation) {
+    const double mu = SineAt(NodeOf(elevation), k);
+    Sample(field.Along(mu), mu, field.sun_elevation_rad(), elevation, sampled);
+    at_nodes.row(elevation) = Chebyshev(NodeOf(elevation));
+  }
+  const auto i = Fit<kTermsOfI>(sampled.of_i, sampled.i);
+  const auto qu = Fit<kTermsOfQu>(sampled.of_qu, sampled.qu);
+  for (int n = 0; n < kTermsOfI; ++n) k.of_z[K::kI0 + n] = PowersOf(i.row(n));
+  for (int n = 0; n < kTermsOfQu; ++n) k.of_z[K::kA0 + n] = PowersOf(qu.row(n));
+  // At Chebyshev's nodes the polynomials are orthogonal.
+  Eigen::RowVector<double, kPowers> once = 2.0 / kElevations * sampled.once.transpose() * at_nodes;
+  once[0] *= 0.5;
+  k.of_z[K::kOnce] = PowersOf(once);
 }
 
 }  // namespace
@@ -67,22 +138,19 @@ void Interpolate(const HazeField& field, double sun_sine, K& k) {
 HazyCoefficients HazyCoefficientsOf(double aot, double wavelength_nm, double sun_elevation_rad) {
   const HazeAir air = HazeAirOf(aot, wavelength_nm);
   const HazeField field(air, sun_elevation_rad);
-  const double sine = std::sin(sun_elevation_rad);
-  const double cosine = std::max(1e-3, std::cos(sun_elevation_rad));
 
   K k;
   k.bend = 0.05 + 0.5 * (air.molecules + air.haze);
   k.stretch = 2.0 * (1.0 + k.bend);
-  Interpolate(field, sine, k);
-  k.glint_by_sun = field.glint_from().x() / cosine;
-  k.glint_by_up = field.glint_from().z() - field.glint_from().x() * sine / cosine;
-  k.glint_dop = field.glint_dop() / (cosine * cosine);
-  const double at_wavelength = std::pow(wavelength_nm / 550.0, -haze::kAcrossPower);
-  k.across = {at_wavelength * haze::kAcross0, at_wavelength * haze::kAcross1,
-              at_wavelength * haze::kAcrossPeak};
+  Prepare(field, k);
+  k.phase = air.optics.phase;
+  k.polarized = air.optics.polarized;
+  const double answered_rad = field.sun_elevation_rad();
+  k.of_sun = std::cos(answered_rad) / std::max(std::cos(sun_elevation_rad), 1e-3);
+  k.of_up = std::sin(answered_rad) - k.of_sun * std::sin(sun_elevation_rad);
 
   HazyTerms<double> up{};
-  up.cos_sun = sine;
+  up.cos_sun = std::sin(answered_rad);
   up.sine = 1.0;
   double q = 0.0;
   double u = 0.0;

@@ -27,6 +27,16 @@ Fresnel ReflectanceOfWater(double cos_incidence) {
           (kWaterIndex * c - below) / (kWaterIndex * c + below)};
 }
 
+Eigen::Vector3d GlintRay::Stokes() const {
+  const double flat = from.head<2>().norm();
+  const double x = flat > 1e-9 ? from.x() / flat : 1.0;
+  const double y = flat > 1e-9 ? from.y() / flat : 0.0;
+  const Eigen::Vector3d axis1(from.z() * x, from.z() * y, -flat);
+  const Eigen::Vector3d axis2(-y, x, 0.0);
+  const Eigen::Vector3d of_axis1 = tensor * axis1;
+  return {intensity(), axis1.dot(of_axis1) - axis2.dot(tensor * axis2), 2.0 * axis2.dot(of_axis1)};
+}
+
 std::vector<GlintRay> SunGlint(double sun_elevation_rad, double slope_variance) {
   const double sigma = std::sqrt(0.5 * slope_variance);
   const Eigen::Vector3d sun(std::cos(sun_elevation_rad), 0.0, std::sin(sun_elevation_rad));
@@ -49,9 +59,7 @@ std::vector<GlintRay> SunGlint(double sun_elevation_rad, double slope_variance) 
           across.norm() > 1e-9 ? across.normalized() : Eigen::Vector3d::UnitY();
       const Eigen::Vector3d p = s.cross(ray);
       const double up = std::hypot(ray.z(), kGrazing);
-      Eigen::Matrix3d tensor = r.s * r.s * s * s.transpose() + r.p * r.p * p * p.transpose();
-      // The facet at the other side of the sun's vertical plane: what is odd in y cancels.
-      tensor(0, 1) = tensor(1, 0) = tensor(1, 2) = tensor(2, 1) = 0.0;
+      const Eigen::Matrix3d tensor = r.s * r.s * s * s.transpose() + r.p * r.p * p * p.transpose();
       rays.push_back({0.5 * area * ray.z() / (up * up) * tensor, -ray, up});
     }
   }

@@ -20,12 +20,15 @@ struct Fresnel {
 };
 [[nodiscard]] Fresnel ReflectanceOfWater(double cos_incidence);
 
-// One facet's ray, for sunlight of unit irradiance across its way.
+// The ray of a facet, for sunlight of unit irradiance across its way. It stands for the ray of the
+// facet at the other side of the sun's vertical plane too: half of the light comes from there.
 struct GlintRay {
   Eigen::Matrix3d tensor;  // of its field, in the air above [-]
   Eigen::Vector3d from;    // unit vector to where it comes from, below the horizon
   double up;               // sine of its elevation as the air attenuates it
   [[nodiscard]] double intensity() const { return tensor.trace(); }
+  // I, Q, U about axis 1 away from the zenith and axis 2 towards increasing azimuth (x to y).
+  [[nodiscard]] Eigen::Vector3d Stokes() const;
 };
 
 [[nodiscard]] std::vector<GlintRay> SunGlint(double sun_elevation_rad, double slope_variance);

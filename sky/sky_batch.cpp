@@ -107,8 +107,6 @@ struct HazyRay {
   HazyCoefficients k;
   double over_zenith;
   POLNAV_INLINE Stokes operator()(const Ray& ray) const {
-    const double y1 = -(ray.up * ray.s2);
-    const double y2 = ray.up * ray.s1 + ray.flat * ray.cos_sun;
     const HazyTerms<double> terms{.cos_sun = ray.cos_sun,
                                   .sine = Larger(ray.up, 0.0),
                                   .ss_re = ray.s1 * ray.s1 - ray.s2 * ray.s2,
@@ -116,9 +114,7 @@ struct HazyRay {
                                   .su_re = -(ray.s1 * ray.flat),
                                   .su_im = -(ray.s2 * ray.flat),
                                   .uu_re = ray.flat * ray.flat,
-                                  .uu_im = 0.0,
-                                  .yy_re = y1 * y1 - y2 * y2,
-                                  .yy_im = 2.0 * (y1 * y2)};
+                                  .uu_im = 0.0};
     double intensity, q, u;
     HazyStokes(k, terms, intensity, q, u);
     const double inverse = 1.0 / intensity;
@@ -177,7 +173,8 @@ void LookAlong(const ClearSky& sky, const RayArrays& rays_W, const StokesArrays&
     FillBerry({berry->max_dop(), over_zenith, w[0], w[1], w[2]}, sun_W, rays_W, stokes);
   } else {
     const HazyCoefficients& k = std::get<HazySky>(sky.model()).coefficients();
-    FillHazy({k, 1.0 / k.zenith}, sun_W, rays_W, stokes);
+    FillHazy({k, 1.0 / k.zenith}, k.of_sun * sun_W + k.of_up * Eigen::Vector3d::UnitZ(), rays_W,
+             stokes);
   }
 }
 

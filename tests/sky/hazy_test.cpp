@@ -87,18 +87,26 @@ TEST(HazySky, IsRadiativeTransferInClearAir) {
   EXPECT_LT(errors.aop_rms_deg, 0.15);
 }
 
-// The goal: 0.03 of the degree, 1 degree of the angle. The fit over the whole grid has 0.004 and
-// 0.6; a sample of it may have half as much again.
+// The goal: 0.03 of the degree, 1 degree of the angle. Over the whole grid it is 0.0023 and 0.12; a
+// sample of it may have half as much again.
 TEST(HazySky, AgreesWithOsoaa) {
   const Errors errors = Compare("hazy", 0.0, 1.0);
-  EXPECT_LT(errors.dop_rms, 0.008);
-  EXPECT_LT(errors.aop_rms_deg, 0.9);
+  EXPECT_LT(errors.dop_rms, 0.0035);
+  EXPECT_LT(errors.aop_rms_deg, 0.18);
   const Errors berry = Compare("berry", 0.0, 1.0);
   const Errors rayleigh = Compare("rayleigh", 0.0, 1.0);
   EXPECT_GT(berry.dop_rms, 10.0 * errors.dop_rms);
   EXPECT_GT(rayleigh.dop_rms, 10.0 * errors.dop_rms);
   EXPECT_GT(berry.aop_rms_deg, 2.0 * errors.aop_rms_deg);
   EXPECT_GT(rayleigh.aop_rms_deg, 2.0 * errors.aop_rms_deg);
+}
+
+// Nothing was fitted to skies with haze, so that those with most of it are a prediction. Half
+// again of what the whole grid has there, 0.0027 and 0.13 degrees.
+TEST(HazySky, PredictsTheHazeOfOsoaa) {
+  const Errors errors = Compare("hazy", 0.3, 0.3);
+  EXPECT_LT(errors.dop_rms, 0.004);
+  EXPECT_LT(errors.aop_rms_deg, 0.2);
 }
 
 double HighestDop(double sun_deg, double aot, double wavelength_nm) {
@@ -138,7 +146,8 @@ TEST(HazySky, IsLightEverywhereWhateverTheSun) {
           for (double azimuth = 0.0; azimuth < 360.0; azimuth += 20.0) {
             const SkyStokes<double> light =
                 sky.Look(DirectionEnu(azimuth * kDegree, elevation * kDegree));
-            EXPECT_GT(light.radiance, 0.0);
+            EXPECT_GT(light.radiance, 0.0)
+                << sun_deg << " " << aot << " " << elevation << " " << azimuth;
             EXPECT_TRUE(std::isfinite(light.radiance));
             EXPECT_LE(std::hypot(light.q, light.u), 1.0)
                 << sun_deg << " " << aot << " " << elevation;
@@ -152,7 +161,7 @@ TEST(HazySky, IsLightEverywhereWhateverTheSun) {
 // Over sunset, and where the sun passes the zenith: steps of a hundredth of a degree move nothing
 // by more than a thousandth.
 TEST(HazySky, IsContinuousInTheSun) {
-  for (const double at_deg : {-0.02, 0.98, 89.9, 89.98}) {
+  for (const double at_deg : {-0.02, 0.98, 0.995, 89.9, 89.98}) {
     const ClearSkyOptions options{.model = "hazy"};
     const SkyStokes<double> before = Look(options, at_deg, 70.0, 40.0);
     const SkyStokes<double> after = Look(options, at_deg + 0.01, 70.0, 40.0);

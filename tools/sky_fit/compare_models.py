@@ -3,7 +3,8 @@
     python3 compare_models.py build/release/polnav osoaa_sky.csv.gz
 
 Runs `polnav sky --directions` for every case; needs nothing but Python. The row of the sun itself,
-which holds its disc, is left out. Neutral points: sign changes of Q in the sun's vertical plane.
+which holds its disc, is left out. Neutral points: sign changes of Q / I in the sun's vertical plane,
+a straight line between the grid's rows, found the same way in both.
 """
 import gzip
 import math
@@ -61,6 +62,42 @@ def neutral_points(rows, stokes):
     return [a + (b - a) * qa / (qa - qb) for (a, qa), (b, qb) in zip(line, line[1:]) if qa * qb < 0]
 
 
+def pairs(reference, ours):
+    """Each neutral point of the one with the nearest of the other, or None."""
+    left = list(ours)
+    matched = []
+    for point in reference:
+        near = min(left, key=lambda x: abs(x - point), default=None)
+        if near is not None and abs(near - point) < 3 and \
+                point == min(reference, key=lambda x: abs(x - near)):
+            left.remove(near)
+        else:
+            near = None
+        matched.append((point, near))
+    return matched + [(None, x) for x in left]
+
+
+def name(point, points, sun):
+    """By its place among the points of its sky."""
+    near_sun = [x for x in points if x < sun + 90]
+    if point not in near_sun:
+        return 'Arago' if point == min(x for x in points if x not in near_sun) else 'fourth'
+    if len(near_sun) == 1:
+        return 'Babinet' if point > sun else 'Brewster'
+    return {near_sun[0]: 'Brewster', near_sun[-1]: 'Babinet'}.get(point, 'inner')
+
+
+def neutral_cells(sun, reference, ours):
+    cells = {n: [] for n in ('Brewster', 'inner', 'Babinet', 'Arago', 'fourth')}
+    for point, found in pairs(reference, ours):
+        if point is None:
+            cells[name(found, ours, sun)].append('extra at %.1f' % found)
+        else:
+            cells[name(point, reference, sun)].append(
+                '%.1f: missing' % point if found is None else '%.1f: %+.1f' % (point, found - point))
+    return [', '.join(c) for c in cells.values()]
+
+
 def rms(x):
     return math.sqrt(sum(v * v for v in x) / len(x)) if x else float('nan')
 
@@ -68,12 +105,12 @@ def rms(x):
 def main():
     polnav, path = sys.argv[1:]
     pooled = {m: ([], [], []) for m in MODELS}
-    print('| nm | sun | AOT | ' + ' | '.join('%s DoP | AoP' % m for m in MODELS) +
-          ' | radiance | neutral points: OSOAA | hazy |')
-    print('|' + '---|' * 12)
+    print('| nm | sun | AOT | ' + ' | '.join('%s DoP | AoP' % m for m in MODELS) + ' | radiance |')
+    print('|' + '---|' * 10)
+    neutral = []
     for case, rows in load(path).items():
         cells = []
-        points = [neutral_points(rows, [r[2:] for r in rows])]
+        reference = neutral_points(rows, [r[2:] for r in rows])
         for model in MODELS:
             ours = run(polnav, model, case, rows)
             errors = compare(rows, ours)
@@ -82,9 +119,15 @@ def main():
             cells += ['%.4f' % rms(errors[0]), '%.2f' % rms(errors[1])]
             if model == 'hazy':
                 cells.append('%.3f' % rms(errors[2]))
-                points.append(neutral_points(rows, ours))
-        cells += [', '.join('%.1f' % x for x in p) for p in points]
+                neutral.append((case, neutral_cells(case[1], reference,
+                                                    neutral_points(rows, ours))))
         print('| %g | %g | %g | ' % case + ' | '.join(cells) + ' |', flush=True)
+    print()
+    print('| nm | sun | AOT | Brewster | inner pair | Babinet | Arago | fourth |')
+    print('|' + '---|' * 8)
+    for case, cells in neutral:
+        print('| %g | %g | %g | ' % case + ' | '.join(cells) + ' |')
+    print()
     for model, (dop, turn, log_i) in pooled.items():
         print('%s, all cases: DoP RMS %.4f, AoP RMS %.3f deg where DoP > 0.05, radiance %.3f' %
               (model, rms(dop), rms(turn), rms(log_i)))
