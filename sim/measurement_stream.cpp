@@ -13,7 +13,7 @@ constexpr std::size_t kSlotsMax = 1024;  // some seconds of all sensors
 
 MeasurementStream::MeasurementStream(const SimulatorOptions& options, const RunKey& key,
                                      nav::TimeNs duration, int render_threads)
-    : options_(options), key_(key), simulator_(options, key) {
+    : options_(options), key_(key), simulator_(options, key, duration) {
   if (render_threads < 1) throw std::logic_error("MeasurementStream: needs a render thread");
   // Enough for every camera to be busy while one picture waits in front of the estimators.
   pictures_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;

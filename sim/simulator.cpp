@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sim/random.h"
+#include "sim/render/lighting.h"
 
 namespace polnav::sim {
 namespace {
@@ -37,8 +38,9 @@ nav::Rig NominalRig(const SensorOptions& sensors) {
   return rig;
 }
 
-Simulator::Simulator(const SimulatorOptions& options, const RunKey& key)
-    : events_(ScheduleDisturbances(options.disturbances, options.duration_s, key.seed, key.trial)) {
+Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration)
+    : events_(ScheduleDisturbances(options.disturbances, nav::ToSeconds(duration), key.seed,
+                                   key.trial)) {
   const auto utc = sky::ParseUtc(options.site.utc);
   if (!utc) throw std::logic_error("Simulator: site.utc is no date: " + options.site.utc);
   track_ = std::make_unique<Track>(options.world.track);
@@ -48,10 +50,24 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key)
                                          sky::ComputeSunArc(sky::SiteOf(options.site), *utc),
                                          SeedOf(key, "sky/clouds"), CloudPassages(events_));
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
-  if (options.sensors.stereo) {
-    scene_ = BuildPlaza(options.world.plaza, *track_, *terrain_, SeedOf(key, "world/plaza"));
-  }
+  BuildScene(options, key, duration);
   EquipVehicle(options.sensors, key);
+}
+
+// Whoever looks at the sky sees the same scene hide it, whether cameras look at it too or not.
+void Simulator::BuildScene(const SimulatorOptions& options, const RunKey& key,
+                           nav::TimeNs duration) {
+  const SensorOptions& sensors = options.sensors;
+  const bool hides_sky =
+      (sensors.polarimeter || sensors.polarization_camera) && HidesSky(options.world);
+  if (!sensors.stereo && !hides_sky) return;
+  scene_ = BuildWorld(options.world, *track_, *terrain_, SeedOf(key, "world/plaza"),
+                      nav::ToSeconds(duration), sensors.stereo.has_value());
+  if (!hides_sky) return;
+  occlusion_ = std::make_unique<Occlusion>(
+      scene_, [lighting = Lighting(*sky_)](const Eigen::Vector3d& normal_W) {
+        return lighting.OfWhite(normal_W);
+      });
 }
 
 Simulator::Clock Simulator::ClockOf(double rate_hz) {
@@ -69,7 +85,7 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
   }
   if (sensors.polarimeter) {
     polarimeter_clock_ = ClockOf(sensors.polarimeter->rate_hz);
-    polarimeter_.emplace(*sensors.polarimeter, *sky_, key.seed, key.trial);
+    polarimeter_.emplace(*sensors.polarimeter, *sky_, key.seed, key.trial, occlusion_.get());
   }
   if (sensors.reference) {
     reference_clock_ = ClockOf(sensors.reference->rate_hz);
@@ -81,7 +97,8 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
   }
   if (sensors.polarization_camera) {
     polarization_camera_clock_ = ClockOf(sensors.polarization_camera->rate_hz);
-    polarization_camera_.emplace(*sensors.polarization_camera, *sky_, key.seed, key.trial);
+    polarization_camera_.emplace(*sensors.polarization_camera, *sky_, key.seed, key.trial,
+                                 occlusion_.get());
   }
 }
 

@@ -23,26 +23,14 @@
 #include "sim/sensors/stereo_camera.h"
 #include "sim/truth.h"
 #include "sim/vehicle/vehicle.h"
-#include "sim/world/plaza.h"
+#include "sim/world/occlusion.h"
 #include "sim/world/terrain.h"
 #include "sim/world/track.h"
+#include "sim/world/world.h"
 #include "sky/skylight.h"
 #include "sky/sun.h"
 
 namespace polnav::sim {
-
-struct WorldOptions {
-  TerrainOptions terrain;
-  TrackOptions track;
-  PlazaOptions plaza;
-
-  template <typename Visitor>
-  void Visit(Visitor& v) {
-    v("terrain", terrain);
-    v("track", track);
-    v("plaza", plaza);
-  }
-};
 
 // Absent: the vehicle does not carry it.
 struct SensorOptions {
@@ -69,7 +57,6 @@ struct SimulatorOptions {
   VehicleOptions vehicle;
   SensorOptions sensors;
   std::vector<DisturbanceOptions> disturbances;
-  double duration_s = 60.0;  // random disturbances begin within it
 };
 
 // Which run of a scenario: everything random depends on these two and nothing else.
@@ -100,8 +87,10 @@ struct SkyRequest {
 
 class Simulator {
  public:
-  // Throws std::logic_error when a rate is none of IsSampleRate's or the date is none.
-  Simulator(const SimulatorOptions& options, const RunKey& key);
+  // duration: traffic and actors move so long, and disturbances are drawn. Throws std::logic_error
+  // when a rate is none of IsSampleRate's or the date is none.
+  Simulator(const SimulatorOptions& options, const RunKey& key,
+            nav::TimeNs duration = 600 * nav::kNsPerSecond);
 
   using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
                                 FrameRequest, SkyRequest>;
@@ -133,6 +122,7 @@ class Simulator {
   };
 
   [[nodiscard]] static Clock ClockOf(double rate_hz);
+  void BuildScene(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration);
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
   std::vector<DisturbanceEvent> events_;
@@ -140,6 +130,7 @@ class Simulator {
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<sky::WorldSky> sky_;
   Scene scene_;
+  std::unique_ptr<Occlusion> occlusion_;  // null: nothing hides the sky
   std::optional<Vehicle> vehicle_;
 
   Clock truth_clock_;

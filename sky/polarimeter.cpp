@@ -19,18 +19,22 @@ constexpr int kAzimuths = 12;
 
 // Stokes parameters [I, Q, U] of one ray, about the axes of S carried to the ray.
 Eigen::Vector3d LookFrom(const Eigen::Quaterniond& q_WS, const Eigen::Vector3d& ray_S,
-                         const Eigen::Vector3d& observer_W, const SkyInstant& sky) {
+                         const Eigen::Vector3d& observer_W, const SkyInstant& sky,
+                         const Cover& cover) {
   const Eigen::Quaterniond q_SP =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray_S);
   const Eigen::Quaterniond q_WP = q_WS * q_SP;
-  const Skylight light = sky.Look((q_WP * Eigen::Vector3d::UnitZ()).normalized(), observer_W);
+  const Eigen::Vector3d ray_W = (q_WP * Eigen::Vector3d::UnitZ()).normalized();
+  if (const auto hidden_by = cover ? cover(ray_W) : std::nullopt) return {*hidden_by, 0.0, 0.0};
+  const Skylight light = sky.Look(ray_W, observer_W);
   return StokesAbout(q_WP * Eigen::Vector3d::UnitX(), q_WP * Eigen::Vector3d::UnitY(), light);
 }
 
 }  // namespace
 
 ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
-                          const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
+                          const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky,
+                          const Cover& cover) {
   if (!(fov_rad >= 0.0 && fov_rad <= pi)) {
     throw std::logic_error("AverageOverCone: the cone is not between 0 and pi wide");
   }
@@ -43,15 +47,17 @@ ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
     for (int k = 0; k < kAzimuths; ++k) {
       const double azimuth = 2.0 * pi * k / kAzimuths;
       const Eigen::Vector3d ray_S(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
-      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, now);
+      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, now, cover);
     }
   }
+  if (stokes[0] <= 0.0) return {};  // black all over
   return {stokes[0], stokes[1] / stokes[0], stokes[2] / stokes[0]};
 }
 
 SixChannels ReadSixChannels(const SixChannelOptics& optics, const Eigen::Quaterniond& q_WS,
-                            const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky) {
-  const ConeLight light = AverageOverCone(optics.fov_rad, q_WS, observer_W, t_s, sky);
+                            const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky,
+                            const Cover& cover) {
+  const ConeLight light = AverageOverCone(optics.fov_rad, q_WS, observer_W, t_s, sky, cover);
   SixChannels reading{};
   for (std::size_t i = 0; i < reading.size(); ++i) {
     const double alpha = kPolarizerAngles_rad[i] + optics.angle_error_rad[i];

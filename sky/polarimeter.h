@@ -12,7 +12,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include "sky/skylight.h"
 
@@ -39,6 +41,10 @@ struct SixChannelOptics {
   SixChannels angle_error_rad{};  // polarizer's true angle minus the nominal one
 };
 
+// Radiance of what hides the sky along a ray (unit vector in W), or nothing where the sky is open.
+// Hidden rays bring unpolarized light. An empty function: the sky is open everywhere.
+using Cover = std::function<std::optional<double>(const Eigen::Vector3d& ray_W)>;
+
 // Light over the cone, about S's x axis.
 struct ConeLight {
   double i = 0.0;  // mean radiance
@@ -52,14 +58,14 @@ struct ConeLight {
 // that is 0.001 (0.02) degrees of angle.
 [[nodiscard]] ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
                                         const Eigen::Vector3d& observer_W, double t_s,
-                                        const WorldSky& sky);
+                                        const WorldSky& sky, const Cover& cover = {});
 
 // Noise-free readings, not yet limited to full scale:
 // I_i = gain K I (1 + d cos(2 phi - 2 alpha_i)) + offset [Zeng2020, eq. 2].
 [[nodiscard]] SixChannels ReadSixChannels(const SixChannelOptics& optics,
                                           const Eigen::Quaterniond& q_WS,
                                           const Eigen::Vector3d& observer_W, double t_s,
-                                          const WorldSky& sky);
+                                          const WorldSky& sky, const Cover& cover = {});
 
 // Electronics: noise proportional to the reading, then an analogue-to-digital converter of so many
 // bits whose full scale is 1. normals: of mean 0 and sigma 1; relative_sigma: noise over reading.

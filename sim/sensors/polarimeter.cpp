@@ -10,8 +10,8 @@ nav::PolarimeterCalibration NominalPolarimeter(const PolarimeterOptions& options
 }
 
 Polarimeter::Polarimeter(const PolarimeterOptions& options, const sky::WorldSky& sky,
-                         std::uint64_t seed, std::uint64_t trial)
-    : options_(options), sky_(&sky), noise_(seed, trial, "polarimeter") {
+                         std::uint64_t seed, std::uint64_t trial, const Occlusion* occlusion)
+    : options_(options), sky_(&sky), occlusion_(occlusion), noise_(seed, trial, "polarimeter") {
   RandomStream::Sample draw = RandomStream(seed, trial, "polarimeter/instrument").At(0);
   optics_.fov_rad = nav::DegToRad(options.fov_deg);
   optics_.exposure = options.exposure;
@@ -23,9 +23,22 @@ Polarimeter::Polarimeter(const PolarimeterOptions& options, const sky::WorldSky&
 }
 
 nav::PolarizationSample Polarimeter::Sample(const Truth& truth, std::uint64_t index) const {
+  const Eigen::Quaterniond q_WS = truth.T_WB.q * q_BS_;
+  const Eigen::Vector3d p_WS_m = truth.T_WB * options_.position_m;
+  Occlusion::View view;
+  if (occlusion_ != nullptr) {
+    view = occlusion_->From(p_WS_m, q_WS * Eigen::Vector3d::UnitZ(), 0.5 * optics_.fov_rad,
+                            truth.stamp);
+  }
+  sky::Cover cover;
+  if (!view.empty()) {
+    cover = [&view](const Eigen::Vector3d& ray_W) -> std::optional<double> {
+      const auto hit = view.Look(ray_W);
+      return hit ? std::optional(hit->radiance) : std::nullopt;
+    };
+  }
   const sky::SixChannels reading =
-      sky::ReadSixChannels(optics_, truth.T_WB.q * q_BS_, truth.T_WB * options_.position_m,
-                           nav::ToSeconds(truth.stamp), *sky_);
+      sky::ReadSixChannels(optics_, q_WS, p_WS_m, nav::ToSeconds(truth.stamp), *sky_, cover);
   RandomStream::Sample draw = noise_.At(index);
   sky::SixChannels normals{};
   for (double& normal : normals) {

@@ -2,7 +2,8 @@
 //
 // The simulated instrument is a particular one: its gains, polarizer angles and mounting are drawn
 // once a trial and stay; the estimator believes the nominal ones. Its optics are
-// sky/polarimeter.h. Not in it: motion during the exposure, stray light, dirt, rain.
+// sky/polarimeter.h; rays that a bridge, a crown or a bus hides bring unpolarized light
+// (sim/world/occlusion.h). Not in it: motion during the exposure, stray light, dirt, rain.
 //
 // Outdoor budget of a single heading by the plain zenith formula [Chu2021, eq. 8], at the defaults,
 // sun 16.5 degrees high, car pitching and rolling by 1.5 degrees, in degrees RMS. The paper says
@@ -24,6 +25,7 @@
 #include "nav/api/measurements.h"
 #include "sim/random.h"
 #include "sim/truth.h"
+#include "sim/world/occlusion.h"
 #include "sky/polarimeter.h"
 #include "sky/skylight.h"
 
@@ -60,9 +62,9 @@ struct PolarimeterOptions {
 
 class Polarimeter {
  public:
-  // The sky must outlive the sensor.
+  // The sky must outlive the sensor, and what hides parts of it. Null: nothing does.
   Polarimeter(const PolarimeterOptions& options, const sky::WorldSky& sky, std::uint64_t seed,
-              std::uint64_t trial);
+              std::uint64_t trial, const Occlusion* occlusion = nullptr);
 
   // index: of the sample, from 0. Any order.
   [[nodiscard]] nav::PolarizationSample Sample(const Truth& truth, std::uint64_t index) const;
@@ -70,6 +72,7 @@ class Polarimeter {
  private:
   PolarimeterOptions options_;
   const sky::WorldSky* sky_;
+  const Occlusion* occlusion_;
   sky::SixChannelOptics optics_;
   Eigen::Quaterniond q_BS_;
   RandomStream noise_;

@@ -50,9 +50,10 @@ nav::PolarizationCameraCalibration NominalPolarizationCamera(
 
 PolarizationCamera::PolarizationCamera(const PolarizationCameraOptions& options,
                                        const sky::WorldSky& sky, std::uint64_t seed,
-                                       std::uint64_t trial)
+                                       std::uint64_t trial, const Occlusion* occlusion)
     : options_(options),
       sky_(&sky),
+      occlusion_(occlusion),
       lens_(NominalLens(options)),
       noise_(seed, trial, "polarization_camera") {
   if (options.width_px % 2 != 0 || options.height_px % 2 != 0) {
@@ -71,6 +72,7 @@ PolarizationCamera::PolarizationCamera(const PolarizationCameraOptions& options,
   lens_.focal_px *= 1.0 + options.focal_sigma * draw.Gaussian();
   lens_.center_px.x() += options.center_sigma_px * draw.Gaussian();
   lens_.center_px.y() += options.center_sigma_px * draw.Gaussian();
+  half_view_rad_ = HalfView();
   RandomStream::Sample wall = RandomStream(seed, trial, "polarization_camera/obstacles").At(0);
   const double harmonic_rad =
       nav::DegToRad(options.obstacles.roughness_deg) / std::sqrt(static_cast<double>(wall_.size()));
@@ -78,6 +80,19 @@ PolarizationCamera::PolarizationCamera(const PolarizationCameraOptions& options,
     harmonic.x() = harmonic_rad * wall.Gaussian();
     harmonic.y() = harmonic_rad * wall.Gaussian();
   }
+}
+
+double PolarizationCamera::HalfView() const {
+  // The grid of rays reaches up to a step beyond the picture.
+  const double right = options_.width_px + options_.sky_step_px;
+  const double bottom = options_.height_px + options_.sky_step_px;
+  double half = 0.0;
+  for (const Eigen::Vector2d& corner :
+       {Eigen::Vector2d(0, 0), {right, 0}, {0, bottom}, {right, bottom}}) {
+    const Eigen::Vector3d ray_S = nav::AxesOfPixel(lens_, corner).ray_S.normalized();
+    half = std::max(half, std::acos(std::clamp(ray_S.z(), -1.0, 1.0)));
+  }
+  return half;
 }
 
 double PolarizationCamera::WallHeight(const Eigen::Vector3d& ray_W) const {
@@ -94,7 +109,11 @@ Eigen::Vector3d PolarizationCamera::Light(const nav::PixelAxes& axes, const View
   const Eigen::Vector3d ray_W = (view.q_WS * axes.ray_S).normalized();
   Eigen::Vector3d stokes = Eigen::Vector3d::Zero();
   const double elevation = std::asin(std::clamp(ray_W.z(), -1.0, 1.0));
-  if (elevation < 0.0) {
+  const auto hidden_by =
+      view.scene.empty() ? std::optional<Occlusion::Hit>() : view.scene.Look(ray_W);
+  if (hidden_by) {
+    stokes[0] = hidden_by->radiance;
+  } else if (elevation < 0.0) {
     stokes[0] = kGroundRadiance;
   } else if (elevation < WallHeight(ray_W)) {
     stokes[0] = options_.obstacles.radiance;
@@ -132,6 +151,12 @@ PolarizationCamera::View PolarizationCamera::ViewFrom(const Truth& truth) const 
   if (elevation > std::max(0.0, WallHeight(view.sun_W))) {
     view.sun_share = view.sky.Transmittance(view.sun_W, view.p_WS_m);
   }
+  if (occlusion_ == nullptr) return view;
+  const Occlusion& scene = *occlusion_;
+  view.scene =
+      scene.From(view.p_WS_m, view.q_WS * Eigen::Vector3d::UnitZ(), half_view_rad_, truth.stamp);
+  const Occlusion::View to_sun = scene.From(view.p_WS_m, view.sun_W, 0.0, truth.stamp);
+  if (!to_sun.empty() && to_sun.Look(view.sun_W)) view.sun_share = 0.0;
   return view;
 }
 

@@ -6,13 +6,14 @@
 // ones. The four channels' errors turn with the camera: gains read unpolarized light as polarized
 // and err by 2 psi, unequal angles shear Q against U and err by 4 psi.
 // Every pixel has its own ray, so the four of a cell do not see quite the same light, as in life.
-// Sky and obstacles are evaluated every `sky_step_px` pixels and interpolated as (I, Q, U) about
-// the pixels' axes, which are smooth everywhere. The error of that against every pixel's own ray,
-// at the defaults (step 4) and a sun 30 degrees high, is in the test; edges of obstacles blur by
-// the step.
-// Flare: light of the sun scattered in the lens, unpolarized, falling off as the inverse square of
-// the angle from the sun; the disc itself saturates. Not in it: ghosts, motion during the exposure,
-// crosstalk between pixels, fixed pattern but for the four channels.
+// Directions that the scene hides bring its unpolarized light (sim/world/occlusion.h).
+// Sky, scene and obstacles are evaluated every `sky_step_px` pixels and interpolated as (I, Q, U)
+// about the pixels' axes, which are smooth everywhere. The error of that against every pixel's own
+// ray, at the defaults (step 4) and a sun 30 degrees high, is in the test; edges of obstacles and
+// of the scene blur by the step. Flare: light of the sun scattered in the lens, unpolarized,
+// falling off as the inverse square of the angle from the sun; the disc itself saturates. Not in
+// it: ghosts, motion during the exposure, crosstalk between pixels, fixed pattern but for the four
+// channels.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,6 +27,7 @@
 #include "sim/random.h"
 #include "sim/sensors/polarization_camera_options.h"
 #include "sim/truth.h"
+#include "sim/world/occlusion.h"
 #include "sky/mosaic.h"
 #include "sky/skylight.h"
 
@@ -37,9 +39,10 @@ namespace polnav::sim {
 
 class PolarizationCamera {
  public:
-  // The sky must outlive the camera. Throws std::invalid_argument on an unusable option.
+  // The sky must outlive the camera, and what hides parts of it. Null: nothing but the obstacles
+  // does. Throws std::invalid_argument on an unusable option.
   PolarizationCamera(const PolarizationCameraOptions& options, const sky::WorldSky& sky,
-                     std::uint64_t seed, std::uint64_t trial);
+                     std::uint64_t seed, std::uint64_t trial, const Occlusion* occlusion = nullptr);
 
   // index: of the picture, from 0. Any order.
   [[nodiscard]] nav::PolarizationImage Take(const Truth& truth, std::uint64_t index) const;
@@ -51,6 +54,7 @@ class PolarizationCamera {
     Eigen::Quaterniond q_WS;
     Eigen::Vector3d p_WS_m;
     Eigen::Vector3d sun_W;
+    Occlusion::View scene;
     double sun_share = 0.0;  // of the sun's own light, past clouds and obstacles
   };
   struct Grid {
@@ -65,11 +69,14 @@ class PolarizationCamera {
   [[nodiscard]] Eigen::Vector3d Light(const nav::PixelAxes& axes, const View& view) const;
   void AddSun(const View& view, const Eigen::Vector2d& pixel, Eigen::Vector3f& stokes) const;
   [[nodiscard]] double Exposure(const Grid& grid) const;
+  [[nodiscard]] double HalfView() const;
   [[nodiscard]] double WallHeight(const Eigen::Vector3d& ray_W) const;
 
   PolarizationCameraOptions options_;
   const sky::WorldSky* sky_;
-  nav::Lens lens_;  // as it is
+  const Occlusion* occlusion_;
+  double half_view_rad_;  // from the optical axis to the farthest corner
+  nav::Lens lens_;        // as it is
   sky::Cell offset_{};
   Eigen::Matrix<double, 4, 3> analyzers_;
   Eigen::Quaterniond q_BS_;

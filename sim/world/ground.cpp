@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
+#include "sim/world/sweep.h"
 #include "sim/world/texture_noise.h"
 #include "sim/world/textures.h"
 
@@ -18,46 +18,27 @@ using Eigen::Vector3d;
 constexpr double kRoadTile_m = 8.0;
 constexpr int kRoadVariants = 7;  // the last one has a pedestrian crossing
 
-// A point of a cross section.
-struct Rib {
-  double offset_m;
-  double lift_m;
-};
-
-using UvOf = std::function<Vector2d(double along_01, int rib, const Vector3d& p_m)>;
-
 class GroundBuilder {
  public:
-  GroundBuilder(const StreetFrame& street, std::uint64_t seed, SceneBuilder& scene)
-      : street_(street), scene_(scene), fine_(seed * 2 + 1, 1.7), coarse_(seed * 2 + 2, 9.0) {}
+  GroundBuilder(const StreetFrame& street, const std::vector<StructureOptions>& structures,
+                std::uint64_t seed, SceneBuilder& scene)
+      : street_(street),
+        structures_(structures),
+        scene_(scene),
+        fine_(seed * 2 + 1, 1.7),
+        coarse_(seed * 2 + 2, 9.0) {}
 
-  // A grid over [s0, s1] along and the cross section (left-going) across. Normals from the grid.
+  // A grid over [s0, s1] along and the cross section (left-going) across.
   void AddStrip(double s0, double s1, int rows, const std::vector<Rib>& ribs, int texture,
-                const UvOf& uv_of) {
-    Mesh& mesh = scene_.MeshAt(street_.At(0.5 * (s0 + s1), ribs.front().offset_m), texture);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const auto stride = static_cast<std::uint32_t>(ribs.size());
-    const double step = (s1 - s0) / rows;
-    for (int row = 0; row <= rows; ++row) {
-      const double s = s0 + step * row;
-      for (std::size_t k = 0; k < ribs.size(); ++k) {
-        const Vector3d p = Point(s, ribs[k]);
-        const std::size_t near = k + 1 < ribs.size() ? k : k - 1;
-        const Vector3d across = Point(s, ribs[near + 1]) - Point(s, ribs[near]);
-        const Vector3d along =
-            Point(s + 0.5 * step, ribs[near]) - Point(s - 0.5 * step, ribs[near]);
-        const Vector2d uv = uv_of(static_cast<double>(row) / rows, static_cast<int>(k), p);
-        mesh.vertices.push_back({p.cast<float>(), along.cross(across).normalized().cast<float>(),
-                                 uv.cast<float>(), static_cast<float>(Shade(p))});
-      }
-    }
-    for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(rows); ++row) {
-      for (std::uint32_t k = 0; k + 1 < stride; ++k) {
-        const std::uint32_t a = first + row * stride + k;
-        const std::uint32_t b = a + stride;
-        mesh.indices.insert(mesh.indices.end(), {a, b, b + 1, a, b + 1, a + 1});
-      }
-    }
+                const UvOf& uv_of, double contrast = 1.0) {
+    AddSweep(
+        street_, {s0, s1, rows, ribs, texture}, uv_of,
+        [&](double s, const Rib& rib, const Vector3d& p) {
+          const bool is_road = std::abs(rib.offset_m) <= street_.half_road_m() + kKerbWidth_m;
+          const double daylight = is_road ? DaylightAt(structures_, s, street_) : 1.0;
+          return daylight * (1.0 + contrast * (Shade(p) - 1.0));
+        },
+        scene_);
   }
 
   // Around the whole loop, in pieces that can be culled; texture coordinates from the place.
@@ -72,29 +53,33 @@ class GroundBuilder {
   }
 
  private:
-  [[nodiscard]] Vector3d Point(double s, const Rib& rib) const {
-    return street_.At(s, rib.offset_m, rib.lift_m);
-  }
   [[nodiscard]] double Shade(const Vector3d& p) const {
     return std::max(0.4, 1.0 + 0.20 * fine_.At(p.x(), p.y()) + 0.25 * coarse_.At(p.x(), p.y()));
   }
 
   const StreetFrame& street_;
+  const std::vector<StructureOptions>& structures_;
   SceneBuilder& scene_;
   GroundNoise fine_;
   GroundNoise coarse_;
 };
 
-void AddRoad(const StreetFrame& street, std::uint64_t seed, GroundBuilder& ground,
-             SceneBuilder& scene) {
+void AddRoad(const StreetFrame& street, const std::vector<StructureOptions>& structures,
+             std::uint64_t seed, GroundBuilder& ground, SceneBuilder& scene) {
   const RandomStream stream(seed, 0, "plaza/road");
   Sample base_random = stream.At(0);
-  const cv::Mat base = FractalNoise(1024, {3, 10, 0.95}, base_random);
+  const cv::Mat base = scene.draws() ? FractalNoise(1024, {4, 10, 1.0}, base_random) : cv::Mat();
   std::vector<int> variants;
   for (int i = 0; i < kRoadVariants; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i) + 1);
-    variants.push_back(scene.AddTexture(RoadTexture(base, i == kRoadVariants - 1, random)));
+    variants.push_back(
+        scene.AddTexture([&] { return RoadTexture(base, i == kRoadVariants - 1, random); }));
   }
+  Sample bare_random = stream.At(99);
+  const bool has_bare = std::any_of(structures.begin(), structures.end(),
+                                    [](const auto& s) { return s.kind == "plain_wall"; });
+  const int bare =
+      has_bare ? scene.AddTexture([&] { return PlainTexture(512, 54.0, 0.05, bare_random); }) : 0;
   constexpr int kColumns = 4;
   std::vector<Rib> ribs;
   for (int k = 0; k <= kColumns; ++k) {
@@ -107,10 +92,13 @@ void AddRoad(const StreetFrame& street, std::uint64_t seed, GroundBuilder& groun
     const bool crossing = i % 12 == 7;
     const auto variant = crossing ? kRoadVariants - 1 : random.Bits() % (kRoadVariants - 1);
     const bool mirrored = random.Uniform() < 0.5;
-    ground.AddStrip(tile * i, tile * (i + 1), 5, ribs, variants[variant],
-                    [mirrored](double along, int rib, const Vector3d&) -> Vector2d {
-                      return {static_cast<double>(rib) / kColumns, mirrored ? 1.0 - along : along};
-                    });
+    const bool is_bare = IsBare(structures, tile * (i + 0.5), street);
+    ground.AddStrip(
+        tile * i, tile * (i + 1), 5, ribs, is_bare ? bare : variants[variant],
+        [mirrored](double along, int rib, const Vector3d&) -> Vector2d {
+          return {static_cast<double>(rib) / kColumns, mirrored ? 1.0 - along : along};
+        },
+        is_bare ? 0.1 : 1.0);
   }
 }
 
@@ -195,15 +183,17 @@ void AddOutside(const StreetFrame& street, const GroundTextures& textures, Groun
 
 }  // namespace
 
-void AddGround(const StreetFrame& street, std::uint64_t seed, SceneBuilder& scene) {
-  GroundBuilder ground(street, seed, scene);
-  AddRoad(street, seed, ground, scene);
+void AddGround(const StreetFrame& street, const std::vector<StructureOptions>& structures,
+               std::uint64_t seed, SceneBuilder& scene) {
+  scene.SetLabel(Label::kGround);
+  GroundBuilder ground(street, structures, seed, scene);
+  AddRoad(street, structures, seed, ground, scene);
   Sample random = RandomStream(seed, 0, "plaza/ground").At(0);
   // Braces keep the order of the draws.
-  const GroundTextures textures{scene.AddTexture(PavingTexture(8, 1.0, random)),
-                                scene.AddTexture(PavingTexture(16, 1.3, random)),
-                                scene.AddTexture(GrassTexture(random)),
-                                scene.AddTexture(PavingTexture(2, 1.2, random))};
+  const GroundTextures textures{scene.AddTexture([&] { return PavingTexture(8, 1.0, random); }),
+                                scene.AddTexture([&] { return PavingTexture(16, 1.3, random); }),
+                                scene.AddTexture([&] { return GrassTexture(random); }),
+                                scene.AddTexture([&] { return PavingTexture(2, 1.2, random); })};
   AddKerbs(street, ground, textures.concrete);
   AddPark(street, textures, ground);
   AddOutside(street, textures, ground);

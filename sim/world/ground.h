@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sim/world/scene_builder.h"
 #include "sim/world/street_frame.h"
+#include "sim/world/structures.h"
 
 namespace polnav::sim {
 
-void AddGround(const StreetFrame& street, std::uint64_t seed, SceneBuilder& scene);
+// Dimmer under structures, bare between plain walls.
+void AddGround(const StreetFrame& street, const std::vector<StructureOptions>& structures,
+               std::uint64_t seed, SceneBuilder& scene);
 
 }  // namespace polnav::sim

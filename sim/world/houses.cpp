@@ -37,14 +37,14 @@ HouseTextures MakeTextures(const RandomStream& stream, SceneBuilder& scene) {
   HouseTextures textures;
   for (int i = 0; i < kStyles; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i));
-    textures.facades.push_back(scene.AddTexture(FacadeTexture(i, random)));
+    textures.facades.push_back(scene.AddTexture([&] { return FacadeTexture(i, random); }));
   }
   for (int i = 0; i < kShopStyles; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(kStyles + i));
-    textures.shops.push_back(scene.AddTexture(ShopTexture(random)));
+    textures.shops.push_back(scene.AddTexture([&] { return ShopTexture(random); }));
   }
   Sample random = stream.At(kStyles + kShopStyles);
-  textures.concrete = scene.AddTexture(PlainTexture(256, 120.0, 0.35, random));
+  textures.concrete = scene.AddTexture([&] { return PlainTexture(256, 120.0, 0.35, random); });
   return textures;
 }
 
@@ -176,6 +176,7 @@ void AddTowers(const StreetFrame& street, const HouseTextures& textures, Sample&
 
 void AddHouses(const PlazaOptions& options, const StreetFrame& street, std::uint64_t seed,
                SceneBuilder& scene) {
+  scene.SetLabel(Label::kBuilding);
   const RandomStream stream(seed, 0, "plaza/houses");
   const HouseTextures textures = MakeTextures(stream, scene);
   Sample random = stream.At(1000);

@@ -12,9 +12,7 @@
 #include "sim/world/street_things.h"
 
 namespace polnav::sim {
-namespace {
 
-// Pulls every texture towards its mean, and every vertex's shade towards one.
 void ScaleContrast(double contrast, Scene& scene) {
   if (contrast == 1.0) return;
   for (cv::Mat& texture : scene.textures) {
@@ -28,23 +26,28 @@ void ScaleContrast(double contrast, Scene& scene) {
   }
 }
 
-}  // namespace
+void AddPlaza(const PlazaOptions& options, const std::vector<StructureOptions>& structures,
+              const StreetFrame& street, const ActorTextures& textures, std::uint64_t seed,
+              SceneBuilder& scene) {
+  // Kerb, path and some park must fit inside.
+  const double least_radius = street.half_road_m() + kKerbWidth_m + kInnerPath_m + 2.0;
+  if (street.radius_m() < least_radius) {
+    throw std::invalid_argument("a loop of " + std::to_string(street.length_m()) +
+                                " m is too short for a plaza with a road " +
+                                std::to_string(2.0 * street.half_road_m()) + " m wide");
+  }
+  AddGround(street, structures, seed, scene);
+  AddHouses(options, street, seed, scene);
+  AddTrees(options.tree_count, street, seed, scene);
+  AddStreetThings(options, street, textures, seed, scene);
+}
 
 Scene BuildPlaza(const PlazaOptions& options, const Track& track, const Terrain& terrain,
                  std::uint64_t seed) {
-  // Kerb, path and some park must fit inside.
-  const double least_radius = 0.5 * track.road_width_m() + kKerbWidth_m + kInnerPath_m + 2.0;
-  if (track.mean_radius_m() < least_radius) {
-    throw std::invalid_argument("a loop of " + std::to_string(track.length_m()) +
-                                " m is too short for a plaza with a road " +
-                                std::to_string(track.road_width_m()) + " m wide");
-  }
   const StreetFrame street(track, terrain);
   SceneBuilder builder;
-  AddGround(street, seed, builder);
-  AddHouses(options, street, seed, builder);
-  AddTrees(options.tree_count, street, seed, builder);
-  AddStreetThings(options, street, seed, builder);
+  const ActorTextures textures = AddActorTextures(seed, builder);
+  AddPlaza(options, {}, street, textures, seed, builder);
   Scene scene = builder.Take();
   ScaleContrast(options.texture_contrast, scene);
   return scene;

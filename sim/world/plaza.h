@@ -6,8 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "sim/world/actor_models.h"
 #include "sim/world/scene.h"
+#include "sim/world/structures.h"
 #include "sim/world/terrain.h"
 #include "sim/world/track.h"
 
@@ -35,6 +38,16 @@ struct PlazaOptions {
   }
 };
 
+// The ground is dimmer under structures, which themselves are not part of the plaza.
+// Throws std::invalid_argument when the loop has no room for a park.
+void AddPlaza(const PlazaOptions& options, const std::vector<StructureOptions>& structures,
+              const StreetFrame& street, const ActorTextures& textures, std::uint64_t seed,
+              SceneBuilder& scene);
+
+// Pulls every texture towards its mean, and every vertex's shade towards one.
+void ScaleContrast(double contrast, Scene& scene);
+
+// The plaza by itself.
 [[nodiscard]] Scene BuildPlaza(const PlazaOptions& options, const Track& track,
                                const Terrain& terrain, std::uint64_t seed);
 

@@ -40,6 +40,7 @@ struct Mesh {
   float albedo = 1.0F;                 // scales the texture
   float draw_distance_m = 1e6F;        // small things are left out beyond
   Label label = Label::kGround;
+  float cover = 1.0F;  // share of what is behind that it hides from a sensor: foliage has gaps
 };
 
 // A car, a bus, a person: it moves. A is its own frame: origin on the ground below its middle, x

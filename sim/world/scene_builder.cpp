@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <opencv2/core.hpp>
 
 namespace polnav::sim {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kCell_m = 32.0;
 constexpr float kDetailDistance_m = 45.0F;
 
 Vertex MakeVertex(const Vector3d& p, const Vector3d& normal, double u, double v, double shade) {
@@ -27,17 +27,25 @@ void AddQuadIndices(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t 
 
 }  // namespace
 
+int SceneBuilder::AddTexture(const std::function<cv::Mat()>& draw) {
+  return AddTexture(draws_ ? draw() : cv::Mat(1, 1, CV_8UC1, cv::Scalar(255)));
+}
+
 int SceneBuilder::AddTexture(const cv::Mat& reflectance) {
   scene_.textures.push_back(reflectance);
   return static_cast<int>(scene_.textures.size()) - 1;
 }
 
 Mesh& SceneBuilder::MeshAt(const Vector3d& p_m, int texture) {
-  const Cell cell{static_cast<int>(std::floor(p_m.x() / kCell_m)),
-                  static_cast<int>(std::floor(p_m.y() / kCell_m)), texture, is_detail_};
+  const Cell cell{static_cast<int>(std::floor(p_m.x() / cell_m_)),
+                  static_cast<int>(std::floor(p_m.y() / cell_m_)),
+                  texture,
+                  is_detail_,
+                  label_,
+                  cover_};
   const auto [entry, is_new] = mesh_of_cell_.try_emplace(cell, scene_.meshes.size());
   if (is_new) {
-    scene_.meshes.push_back({.texture = texture});
+    scene_.meshes.push_back({.texture = texture, .label = label_, .cover = cover_});
     if (is_detail_) scene_.meshes.back().draw_distance_m = kDetailDistance_m;
   }
   return scene_.meshes[entry->second];
@@ -177,6 +185,21 @@ void SceneBuilder::AddBlob(const Vector3d& center_m, const Vector3d& radii_m, in
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, b + 1, a + 1});
     }
   }
+}
+
+void SceneBuilder::AddModel(const std::vector<Mesh>& meshes_A, const nav::Pose& T_WA) {
+  for (const Mesh& model : meshes_A) {
+    SetLabel(model.label);
+    SetDetail(model.draw_distance_m < 1e5F);
+    Mesh& mesh = MeshAt(T_WA.p, model.texture);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vertex& v : model.vertices) {
+      mesh.vertices.push_back({(T_WA * v.p_W_m.cast<double>()).cast<float>(),
+                               (T_WA.q * v.normal_W.cast<double>()).cast<float>(), v.uv, v.shade});
+    }
+    for (const std::uint32_t index : model.indices) mesh.indices.push_back(first + index);
+  }
+  SetDetail(false);
 }
 
 }  // namespace polnav::sim

@@ -7,8 +7,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <compare>
+#include <functional>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "sim/random.h"
 #include "sim/world/scene.h"
@@ -54,10 +56,24 @@ struct Pole {
 
 class SceneBuilder {
  public:
-  int AddTexture(const cv::Mat& reflectance);
+  // cell_m: side of a square of ground; infinity keeps everything of a texture together.
+  // draws: false leaves every texture a single pixel, for whom only shapes matter.
+  explicit SceneBuilder(double cell_m = 32.0, bool draws = true) : cell_m_(cell_m), draws_(draws) {}
+
+  // Linear reflectance, sides powers of two.
+  int AddTexture(const std::function<cv::Mat()>& draw);
+  int AddTexture(const cv::Mat& reflectance);  // kept even where nothing is drawn
+
+  [[nodiscard]] bool draws() const { return draws_; }
+
+  // What is added from now on is a thing of this kind.
+  void SetLabel(Label label) { label_ = label; }
 
   // While on, what is added is left out of pictures from more than 45 m away.
   void SetDetail(bool is_detail) { is_detail_ = is_detail; }
+
+  // Share of the sky behind it that a surface added from now on hides; below 1 for foliage alone.
+  void SetCover(double cover) { cover_ = static_cast<float>(cover); }
 
   // The mesh of this texture that holds what stands at this place.
   Mesh& MeshAt(const Eigen::Vector3d& p_m, int texture);
@@ -72,12 +88,17 @@ class SceneBuilder {
   void AddBlob(const Eigen::Vector3d& center_m, const Eigen::Vector3d& radii_m, int texture,
                double shade, RandomStream::Sample& random);
 
+  // What was made in a frame A of its own, its textures by this builder.
+  void AddModel(const std::vector<Mesh>& meshes_A, const nav::Pose& T_WA);
+
   [[nodiscard]] Scene Take() { return std::move(scene_); }
 
  private:
   struct Cell {
     int column, row, texture;
     bool is_detail;
+    Label label;
+    float cover;
     auto operator<=>(const Cell&) const = default;
   };
   void AddFlatQuad(Mesh& mesh, const std::array<Eigen::Vector3d, 4>& corners_ccw, double uv_per_m,
@@ -85,8 +106,12 @@ class SceneBuilder {
 
   void CapPole(Mesh& mesh, const Pole& pole, std::uint32_t first, double uv_per_m, double shade);
 
+  double cell_m_;
+  bool draws_;
   Scene scene_;
   bool is_detail_ = false;
+  Label label_ = Label::kGround;
+  float cover_ = 1.0F;
   std::map<Cell, std::size_t> mesh_of_cell_;
 };
 

@@ -33,6 +33,10 @@ class StreetFrame {
     return {p_m.x(), p_m.y(), terrain_.Height(p_m.x(), p_m.y()) + lift_m};
   }
 
+  [[nodiscard]] Eigen::Vector3d NormalAt(const Eigen::Vector2d& p_m) const {
+    return terrain_.Normal(p_m.x(), p_m.y());
+  }
+
   // Direction of driving, counter-clockwise from east [rad].
   [[nodiscard]] double Yaw(double s_m) const {
     const Eigen::Vector2d t = track_.At(s_m).tangent;

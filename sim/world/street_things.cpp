@@ -1,7 +1,7 @@
 #include "sim/world/street_things.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "sim/world/facade_textures.h"
@@ -30,39 +30,14 @@ void AddLamp(const StreetFrame& street, double s, const Materials& materials, Sc
   scene.AddBox({top + arm, street.Yaw(s) + M_PI_2, 0.7, 0.3, 0.12}, materials.paint, 0.5, 0.8);
 }
 
-void AddCar(const StreetFrame& street, double s, const Materials& materials, Sample& random,
-            SceneBuilder& scene) {
+void AddParkedCar(const StreetFrame& street, double s, const ActorTextures& textures,
+                  Sample& random, SceneBuilder& scene) {
   const double offset = -street.half_road_m() - 0.5 * kBayWidth_m - 0.1;
-  const Vector3d foot = street.At(s, offset, 0.0);
   const double yaw = street.Yaw(s) + 0.02 * random.Gaussian();
-  const double paint = std::array{0.12, 0.3, 0.55, 0.95, 1.1}[random.Bits() % 5];
-  const double length = 4.0 + 0.8 * random.Uniform();
-  const Vector3d along(std::cos(yaw), std::sin(yaw), 0.0);
-  const Vector3d across(-along.y(), along.x(), 0.0);
-  const Vector3d up = Vector3d::UnitZ();
-  scene.AddBox({foot + 0.28 * up, yaw, length, 1.72, 0.55}, materials.paint, 0.5, paint);
-  scene.AddBox({foot + 0.83 * up - 0.15 * along, yaw, 0.60 * length, 1.6, 0.42, 0.80},
-               materials.poster, 0.12, 0.30);  // windows
-  scene.AddBox({foot + 1.25 * up - 0.15 * along, yaw, 0.49 * length, 1.29, 0.12, 0.9},
-               materials.paint, 0.5, paint);
-  scene.SetDetail(true);
-  for (const double x : {-0.32, 0.31}) {
-    for (const double side : {-1.0, 1.0}) {
-      const Vector3d hub = foot + x * length * along + side * 0.68 * across + 0.31 * up;
-      const Vector3d axle = side * across;
-      scene.AddPole({hub, hub + 0.2 * axle, 0.31, 0.31, 10, true}, materials.paint, 0.8, 0.14);
-      scene.AddPole({hub, hub + 0.22 * axle, 0.18, 0.16, 7, true}, materials.paint, 0.8, 0.7);
-    }
-  }
-  for (const double end : {-0.5, 0.5}) {  // lights, number plate
-    const Vector3d bumper = foot + end * length * along + 0.45 * up;
-    scene.AddBox({bumper, yaw, 0.06, 0.5, 0.14}, materials.paint, 0.8, 1.2);
-    for (const double side : {-0.7, 0.7}) {
-      scene.AddBox({bumper + side * across + 0.15 * up, yaw, 0.08, 0.28, 0.16}, materials.paint,
-                   0.8, end > 0.0 ? 1.25 : 0.25);
-    }
-  }
-  scene.SetDetail(false);
+  scene.AddModel(
+      CarMeshes(textures, random),
+      {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())), street.At(s, offset, 0.0)});
+  scene.SetLabel(Label::kStreetThing);
 }
 
 void AddBench(const Vector3d& foot, double yaw, const Materials& materials, SceneBuilder& scene) {
@@ -76,6 +51,23 @@ void AddBench(const Vector3d& foot, double yaw, const Materials& materials, Scen
     scene.AddBox({foot + x * along, yaw, 0.08, 0.42, 0.42}, materials.paint, 0.6, 0.3);
   }
   scene.SetDetail(false);
+}
+
+// A clipped row of bushes: a core, and lumps that break its outline.
+void AddHedge(const Vector3d& foot, double yaw, const Materials& materials, Sample& random,
+              SceneBuilder& scene) {
+  const double length = 3.0 + 5.0 * random.Uniform();
+  const double height = 0.7 + 0.4 * random.Uniform();
+  const Vector3d along(std::cos(yaw), std::sin(yaw), 0.0);
+  scene.SetLabel(Label::kVegetation);
+  scene.AddBox({foot, yaw, length, 0.7, 0.85 * height, 0.92}, materials.hedge, 0.5, 0.9);
+  const int bushes = static_cast<int>(length / 0.9);
+  for (int i = 0; i < bushes; ++i) {
+    const Vector3d at = foot + length * ((i + 0.5) / bushes - 0.5) * along;
+    scene.AddBlob(at + 0.55 * height * Vector3d::UnitZ(), {0.55, 0.5, 0.6 * height},
+                  materials.hedge, 0.9 + 0.4 * random.Uniform(), random);
+  }
+  scene.SetLabel(Label::kStreetThing);
 }
 
 void AddSign(const Vector3d& foot, double yaw, const Materials& materials, Sample& random,
@@ -98,8 +90,7 @@ void AddPiece(int kind, const Vector3d& foot, double yaw, const Materials& mater
       scene.AddBox({foot, yaw, 0.5, 0.45, 0.9, 0.9}, materials.paint, 0.7, 0.4);
       break;
     case 2:
-      scene.AddBox({foot, yaw, 3.0 + 5.0 * random.Uniform(), 0.9, 0.7 + 0.4 * random.Uniform()},
-                   materials.hedge, 0.5, 1.0);
+      AddHedge(foot, yaw, materials, random, scene);
       break;
     case 3:
       AddSign(foot, yaw, materials, random, scene);
@@ -122,29 +113,31 @@ void AddMonument(const StreetFrame& street, const Materials& materials, SceneBui
 
 }  // namespace
 
-void AddStreetThings(const PlazaOptions& options, const StreetFrame& street, std::uint64_t seed,
-                     SceneBuilder& scene) {
+void AddStreetThings(const PlazaOptions& options, const StreetFrame& street,
+                     const ActorTextures& textures, std::uint64_t seed, SceneBuilder& scene) {
+  scene.SetLabel(Label::kStreetThing);
   const RandomStream stream(seed, 0, "plaza/things");
   Sample texture_random = stream.At(0);
   const Materials materials{
-      .paint = scene.AddTexture(PlainTexture(256, 170.0, 0.25, texture_random)),
-      .wood = scene.AddTexture(PlainTexture(256, 95.0, 0.6, texture_random)),
-      .hedge = scene.AddTexture(FoliageTexture(texture_random)),
-      .poster = scene.AddTexture(ShopTexture(texture_random))};
+      .paint = scene.AddTexture([&] { return PlainTexture(256, 170.0, 0.25, texture_random); }),
+      .wood = scene.AddTexture([&] { return PlainTexture(256, 95.0, 0.6, texture_random); }),
+      .hedge = scene.AddTexture([&] { return FoliageTexture(texture_random); }),
+      .poster = scene.AddTexture([&] { return ShopTexture(texture_random); })};
   for (int i = 0; i < options.lamp_count; ++i) {
     AddLamp(street, street.length_m() * (i + 0.5) / options.lamp_count, materials, scene);
   }
   for (int i = 0; i < options.parked_car_count; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i) + 1000);
     const double slot = street.length_m() / options.parked_car_count;
-    AddCar(street, slot * (i + 0.3 + 0.4 * random.Uniform()), materials, random, scene);
+    AddParkedCar(street, slot * (i + 0.3 + 0.4 * random.Uniform()), textures, random, scene);
   }
   for (int i = 0; i < options.furniture_count; ++i) {
     Sample random = stream.At(static_cast<std::uint64_t>(i) + 2000);
     const double s = street.length_m() * (i + random.Uniform()) / options.furniture_count;
     const double inner =
         street.half_road_m() + kKerbWidth_m + kInnerPath_m + 6.0 * random.Uniform();
-    const double outer = -street.half_road_m() - kBayWidth_m - 1.5 - 5.0 * random.Uniform();
+    // People walk between the lamps and these.
+    const double outer = -street.half_road_m() - kBayWidth_m - 2.8 - 3.7 * random.Uniform();
     const double offset = i % 2 == 0 ? inner : outer;
     const double yaw = street.Yaw(s) + 0.1 * random.Gaussian();
     AddPiece(static_cast<int>(random.Bits() % 5), street.At(s, offset, kKerbHeight_m), yaw,

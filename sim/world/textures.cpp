@@ -105,7 +105,7 @@ void Paint(cv::Mat& image, const cv::Mat& wear, const cv::Rect& stripe) {
 }  // namespace
 
 cv::Mat RoadTexture(const cv::Mat& base, bool with_crossing, Sample& random) {
-  cv::Mat image = 54.0 + 46.0 * base;
+  cv::Mat image = 56.0 + 40.0 * base;
   for (int i = 0; i < 3; ++i) DrawPatch(image, random);
   for (int i = 0; i < 40; ++i) DrawStain(image, Between(random, -30.0, 26.0), random);
   for (int i = 0; i < 7; ++i)

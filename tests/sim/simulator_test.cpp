@@ -126,6 +126,54 @@ TEST(Simulator, LeavingASensorOutLeavesTheOthersAsTheyAre) {
   EXPECT_EQ(rest, RecordRun(options, {1, 0}, 1.0));
 }
 
+// A car on its way through a tunnel from 12 to 22 m, the tail of traffic around it.
+SimulatorOptions ThroughATunnel() {
+  SimulatorOptions options = SmallOptions();
+  options.sensors.stereo.reset();
+  options.vehicle.car = CarOptions{.start_delay_s = 0.0};
+  options.world.structures = {{.kind = "tunnel", .start_m = 12.0, .length_m = 10.0}};
+  options.world.traffic = {.cars = 6, .buses = 2, .pedestrians = 6};
+  return options;
+}
+
+TEST(Simulator, HidesTheSkyInATunnelAndGivesItBackBitByBit) {
+  SimulatorOptions options = ThroughATunnel();
+  options.sensors.polarization_camera.reset();
+  const Record hidden = RecordRun(options, {1, 0}, 8.0);
+  options.world.sky_view = "open";
+  const Record open = RecordRun(options, {1, 0}, 8.0);
+  EXPECT_EQ(hidden.at("truth"), open.at("truth"));
+  int inside = 0;
+  int beyond = 0;
+  for (std::size_t i = 0; i + 6 <= open.at("polarimeter").size(); i += 12) {  // 20 Hz; truth 10 Hz
+    const double north_m = open.at("truth")[i / 12 * 3 + 1];  // the track starts due north
+    const bool same =
+        std::equal(open.at("polarimeter").begin() + static_cast<std::ptrdiff_t>(i),
+                   open.at("polarimeter").begin() + static_cast<std::ptrdiff_t>(i + 6),
+                   hidden.at("polarimeter").begin() + static_cast<std::ptrdiff_t>(i));
+    if (north_m > 13.0 && north_m < 20.0) {
+      ++inside;
+      EXPECT_FALSE(same) << north_m;
+    } else if (north_m < 11.0 || north_m > 23.5) {
+      ++beyond;
+      EXPECT_TRUE(same) << north_m;
+    }
+  }
+  EXPECT_GT(inside, 5);
+  EXPECT_GT(beyond, 20);
+}
+
+// The scene that hides the sky is the same whether cameras need its textures or not.
+TEST(Simulator, HidesTheSkyAlikeWithAndWithoutCameras) {
+  SimulatorOptions options = ThroughATunnel();
+  const Record without = RecordRun(options, {1, 0}, 4.0);
+  options.sensors.stereo = SmallOptions().sensors.stereo;
+  const Record with = RecordRun(options, {1, 0}, 4.0);
+  for (const char* stream : {"polarimeter", "polarization_camera"}) {
+    EXPECT_EQ(with.at(stream), without.at(stream)) << stream;
+  }
+}
+
 TEST(Simulator, NobodyNeedsToReadAStreamToItsEnd) {
   MeasurementStream stream(SmallOptions(), {1, 0}, nav::FromSeconds(60.0), 2);
   EXPECT_TRUE(stream.Next());

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "sky/sun.h"
@@ -186,6 +187,25 @@ TEST(Digitize, ScalesNoiseWithTheReading) {
   EXPECT_NEAR(out[1], 0.44, 1e-7);
   EXPECT_NEAR(out[2], 0.45, 1e-7);
   EXPECT_THROW(static_cast<void>(Digitize({}, {}, 0.0, 0)), std::logic_error);
+}
+
+TEST(AverageOverCone, TakesUnpolarizedLightFromHiddenRays) {
+  const WorldSky sky = ClearSky();
+  const auto average = [&](const Cover& cover) {
+    return AverageOverCone(10.0 * kDegree, Turned(0.3), kOrigin, 0.0, sky, cover);
+  };
+  const ConeLight open = average({});
+  const ConeLight same = average([](const Eigen::Vector3d&) { return std::nullopt; });
+  EXPECT_EQ(open.i, same.i);
+  EXPECT_EQ(open.q, same.q);
+  EXPECT_EQ(open.u, same.u);
+  const ConeLight closed = average([](const Eigen::Vector3d&) { return 0.25; });
+  EXPECT_NEAR(closed.i, 0.25, 1e-15);
+  EXPECT_EQ(closed.q, 0.0);
+  EXPECT_EQ(closed.u, 0.0);
+  const ConeLight black = average([](const Eigen::Vector3d&) { return 0.0; });
+  EXPECT_EQ(black.i, 0.0);
+  EXPECT_EQ(black.q, 0.0);
 }
 
 }  // namespace

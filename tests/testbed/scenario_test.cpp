@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/testbed/example_run.h"
+#include "tests/testbed/temporary_folder.h"
 #include "tools/testbed/input_error.h"
 
 namespace polnav::testbed {
@@ -157,6 +160,70 @@ TEST(Scenario, AcceptsMetricsThatTheRunNames) {
                     "  - {name: c, metric: timing_ms.render.p99, at_most: 1}\n"
                     "  - {name: d, metric: streams.imu.count, at_least: 1}\n"),
             "no error");
+}
+
+std::string WorldError(const std::string& world) { return ErrorOf("name: a\nworld:\n" + world); }
+
+TEST(Scenario, RefusesAnActorWithNowhereToGo) {
+  EXPECT_EQ(WorldError("  actors:\n    - kind: bus\n      path_m: [[1, 2]]\n"),
+            "s.yaml:5: world.actors.0.path_m: a path needs two points or more, this one has 1");
+  EXPECT_EQ(WorldError("  actors:\n    - kind: bus\n"),
+            "s.yaml:4: world.actors.0.path_m: a path needs two points or more, this one has 0");
+  EXPECT_EQ(WorldError("  actors:\n    - path_m: [[1, 2], [3, 4], [3, 4]]\n"),
+            "s.yaml:4: world.actors.0.path_m: the points 1 and 2 of the path are the same");
+  EXPECT_EQ(WorldError("  actors:\n    - path_m: [[1, 2], [3]]\n"),
+            "s.yaml:4: world.actors.0.path_m: expected a list of 2 numbers, got 1 items");
+  EXPECT_EQ(WorldError("  actors:\n    - kind: tram\n"),
+            "s.yaml:4: world.actors.0.kind: 'tram' is not one of: car, bus, pedestrian");
+  EXPECT_EQ(WorldError("  actors:\n    - path_m: [[1, 2], [3, 4.5]]\n      loop: true\n"),
+            "no error");
+}
+
+TEST(Scenario, RefusesTrafficOnANarrowRoad) {
+  EXPECT_EQ(WorldError("  track: {road_width_m: 4}\n  traffic: {cars: 3}\n"),
+            "s.yaml:4: world.traffic: cars and buses pass the ego on both sides: they need a "
+            "road_width_m of 7.6 or more, the track has 4");
+}
+
+TEST(Scenario, RefusesAStructureWhereItCannotStand) {
+  EXPECT_EQ(WorldError("  structures:\n    - {kind: bridge, start_m: 400}\n"),
+            "s.yaml:4: world.structures.0.start_m: lies outside the track of 377 m");
+  EXPECT_EQ(
+      WorldError("  structures:\n    - kind: tunnel\n      start_m: 350\n      length_m: 40\n"),
+      "s.yaml:6: world.structures.0.length_m: reaches beyond the end of the track of 377 m");
+  EXPECT_EQ(WorldError("  structures:\n    - {kind: plain_wall, start_m: -5, length_m: 40}\n"),
+            "s.yaml:4: world.structures.0.start_m: a plain_wall must keep 5 m off the start, where "
+            "the cameras set their exposure");
+  EXPECT_EQ(WorldError("  structures:\n    - {kind: tunnel, start_m: 50, length_m: 40}\n"
+                       "    - {kind: bridge, start_m: 80, length_m: 4}\n"),
+            "s.yaml:5: world.structures.1.start_m: overlaps the tunnel of world.structures.0");
+}
+
+TEST(Scenario, LooksForASceneFileBesideTheScenario) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "name: a\nworld:\n  scene_file:\n    path: town.obj\n";
+  const auto error = [&] {
+    try {
+      (void)LoadScenario(file);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  const std::string at = file.string() + ":4: world.scene_file.path: scene file '" +
+                         (folder.path() / "town.obj").string() + "': ";
+  EXPECT_EQ(error(), at + "there is no such file");
+  std::ofstream(folder.path() / "town.obj") << "v 0 0 0\nv 1 0 0\nl 1 2\n";
+  EXPECT_EQ(error(), at + "it holds no faces");
+  std::ofstream(folder.path() / "town.obj")
+      << "mtllib town.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
+  std::ofstream(folder.path() / "town.mtl") << "newmtl m\nmap_Kd bricks.png\n";
+  EXPECT_EQ(error(), at + "the texture 'bricks.png' of its material 'm' is missing or no image");
+  std::ofstream(folder.path() / "town.mtl") << "newmtl m\nKd 0.5 0.5 0.5\n";
+  EXPECT_EQ(error(), "no error");
+  EXPECT_EQ(ErrorOf("name: a\nworld:\n  scene_file: {scale: 2}\n"),
+            "s.yaml:3: world.scene_file.path: expected the path of a glTF or OBJ file");
 }
 
 }  // namespace

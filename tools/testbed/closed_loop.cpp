@@ -85,10 +85,10 @@ class Loop {
 
   RunRecord Run(const std::function<void(double)>& progress) {
     const auto begin = Clock::now();
-    sim::MeasurementStream stream(
-        {scenario_.site, scenario_.sky, scenario_.world, scenario_.vehicle, scenario_.sensors,
-         scenario_.disturbances, scenario_.duration_s},
-        {options_.seed, options_.trial}, duration_, options_.render_threads);
+    sim::MeasurementStream stream({scenario_.site, scenario_.sky, scenario_.world,
+                                   scenario_.vehicle, scenario_.sensors, scenario_.disturbances},
+                                  {options_.seed, options_.trial}, duration_,
+                                  options_.render_threads);
     while (const auto item = stream.Next()) {
       if (const auto* truth = std::get_if<sim::Truth>(&*item)) {
         Take(*truth);

@@ -158,23 +158,38 @@ void OptionLoader::operator()(const char* key, std::uint64_t& value) {
   value = *number;
 }
 
-void OptionLoader::operator()(const char* key, Eigen::Vector3d& value, OptionRange range) {
-  const YAML::Node node = Take(key);
-  if (!node.IsDefined()) return;
-  if (!node.IsSequence() || node.size() != 3) {
-    Fail(key, "expected a list of 3 numbers, got " +
+void OptionLoader::TakeNumbers(const YAML::Node& node, const char* key, OptionRange range,
+                               double* value, std::size_t count) const {
+  if (!node.IsSequence() || node.size() != count) {
+    Fail(key, fmt::format("expected a list of {} numbers, got ", count) +
                   (node.IsSequence() ? fmt::format("{} items", node.size()) : Describe(node)));
   }
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::optional<double> number =
         node[i].IsScalar() ? ParseNumber<double>(node[i].Scalar()) : std::nullopt;
     if (!number || !std::isfinite(*number)) {
-      Fail(key, fmt::format("expected a list of 3 numbers, got {} in it", Describe(node[i])));
+      Fail(key,
+           fmt::format("expected a list of {} numbers, got {} in it", count, Describe(node[i])));
     }
     if (!range.Contains(*number)) {
       Fail(key, fmt::format("{} is out of range, {}", node[i].Scalar(), RangeText(range)));
     }
-    value[static_cast<Eigen::Index>(i)] = *number;
+    value[i] = *number;
+  }
+}
+
+void OptionLoader::operator()(const char* key, Eigen::Vector3d& value, OptionRange range) {
+  const YAML::Node node = Take(key);
+  if (node.IsDefined()) TakeNumbers(node, key, range, value.data(), 3);
+}
+
+void OptionLoader::operator()(const char* key, std::vector<Eigen::Vector2d>& value,
+                              OptionRange range) {
+  const YAML::Node node = Take(key);
+  if (!node.IsDefined()) return;
+  value.clear();
+  for (std::size_t i = 0; i < CheckedListSize(node, key); ++i) {
+    TakeNumbers(node[i], key, range, value.emplace_back().data(), 2);
   }
 }
 

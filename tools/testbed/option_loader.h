@@ -27,6 +27,7 @@ class OptionLoader {
   void operator()(const char* key, int& value, OptionRange range = {});
   void operator()(const char* key, std::uint64_t& value);
   void operator()(const char* key, Eigen::Vector3d& value, OptionRange range = {});
+  void operator()(const char* key, std::vector<Eigen::Vector2d>& value, OptionRange range = {});
   void operator()(const char* key, bool& value);
   void operator()(const char* key, std::string& value);
   void operator()(const char* key, std::string& value, OptionChoices choices);
@@ -74,6 +75,9 @@ class OptionLoader {
   std::optional<std::string> TakeScalar(const char* key, std::string_view expected,
                                         bool quotes_allowed);
   std::optional<double> TakeNumber(const char* key, OptionRange range);
+  // A list of just so many numbers.
+  void TakeNumbers(const YAML::Node& node, const char* key, OptionRange range, double* value,
+                   std::size_t count) const;
   [[nodiscard]] std::size_t CheckedListSize(const YAML::Node& node, const char* key) const;
   void CheckChoice(const std::string& path, const std::string& value, OptionChoices choices) const;
   [[noreturn]] void Fail(const char* key, const std::string& message) const;

@@ -32,6 +32,10 @@ class ValueWriter {
   void operator()(const char* key, Eigen::Vector3d& value, OptionRange = {}) {
     tree_[key] = {value.x(), value.y(), value.z()};
   }
+  void operator()(const char* key, std::vector<Eigen::Vector2d>& value, OptionRange = {}) {
+    tree_[key] = Json::array();
+    for (const Eigen::Vector2d& p : value) tree_[key].push_back({p.x(), p.y()});
+  }
   void operator()(const char* key, std::optional<double>& value, OptionRange = {}) {
     if (value) tree_[key] = *value;
   }
@@ -100,6 +104,12 @@ class SchemaWriter {
               {"minItems", 3},
               {"maxItems", 3},
               {"default", {value.x(), value.y(), value.z()}}});
+  }
+  void operator()(const char* key, std::vector<Eigen::Vector2d>&, OptionRange range = {}) {
+    Json number = {{"type", "number"}};
+    AddRange(number, range);
+    Add(key, {{"type", "array"},
+              {"items", {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}}}});
   }
   template <typename T>
   void operator()(const char* key, std::optional<T>& section) {

@@ -14,6 +14,7 @@
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
 #include "tools/testbed/option_tree.h"
+#include "tools/testbed/world_check.h"
 #include "tools/testbed/yaml_document.h"
 
 namespace polnav::testbed {
@@ -168,7 +169,9 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   }
   Scenario scenario;
   LoadOptions(document, scenario);
+  ResolveSceneFile(document, scenario.world);
   CheckBasics(document, scenario);
+  CheckWorld(document, scenario.world);
   CheckVehicle(document, scenario.vehicle);
   CheckRates(document, scenario.sensors);
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
