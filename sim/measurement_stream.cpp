@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/sensors/auto_exposure.h"
+
 namespace polnav::sim {
 namespace {
 
@@ -32,8 +34,15 @@ MeasurementStream::~MeasurementStream() {
 
 void MeasurementStream::Simulate(nav::TimeNs duration) {
   try {
+    std::optional<AutoExposure> auto_exposure;  // its OpenGL context belongs to this thread
+    if (simulator_.true_stereo() && options_.sensors.stereo->auto_exposure) {
+      auto_exposure.emplace(simulator_.scene(), simulator_.sky(), simulator_.true_stereo()->left,
+                            *options_.sensors.stereo);
+    }
     while (simulator_.truth().stamp <= duration) {
-      for (const Simulator::Emission& emission : simulator_.Step()) {
+      for (Simulator::Emission& emission : simulator_.Step()) {
+        auto* const frame = std::get_if<FrameRequest>(&emission);
+        if (frame != nullptr && auto_exposure) frame->exposure = auto_exposure->Next(*frame);
         if (!Push(emission)) return;
       }
     }
@@ -47,33 +56,54 @@ void MeasurementStream::Simulate(nav::TimeNs duration) {
   job_.notify_all();
 }
 
-// False: nobody wants any more.
+// False: nobody wants any more. This and the three below.
 bool MeasurementStream::Push(const Simulator::Emission& emission) {
+  if (const auto* request = std::get_if<FrameRequest>(&emission)) return PushFrame(*request);
+  if (const auto* sky = std::get_if<SkyRequest>(&emission)) return Ask(*sky);
+  if (const auto* truth = std::get_if<Truth>(&emission)) return Put(StreamItem(*truth));
+  if (const auto* imu = std::get_if<nav::ImuSample>(&emission)) {
+    return Put(StreamItem(nav::Measurement(*imu)));
+  }
+  if (const auto* light = std::get_if<nav::PolarizationSample>(&emission)) {
+    return Put(StreamItem(nav::Measurement(*light)));
+  }
+  return Put(StreamItem(nav::Measurement(std::get<nav::ReferencePose>(emission))));
+}
+
+bool MeasurementStream::PushFrame(const FrameRequest& request) {
+  if (options_.sensors.stereo->ground_truth) {
+    if (last_frame_ && !Ask(FrameTruthRequest{*last_frame_, request.stamp, request.T_WB})) {
+      return false;
+    }
+    last_frame_ = request;
+  }
+  return Ask(request);
+}
+
+bool MeasurementStream::Ask(const PictureRequest& request) {
   std::unique_lock lock(mutex_);
+  if (!WaitForRoom(lock)) return false;
+  jobs_.push_back({request, {}});
+  slots_.emplace_back(jobs_.back().done.get_future());
+  ++pictures_under_way_;
+  job_.notify_one();
+  ready_.notify_one();
+  return true;
+}
+
+bool MeasurementStream::Put(StreamItem item) {
+  std::unique_lock lock(mutex_);
+  if (!WaitForRoom(lock)) return false;
+  slots_.emplace_back(std::move(item));
+  ready_.notify_one();
+  return true;
+}
+
+bool MeasurementStream::WaitForRoom(std::unique_lock<std::mutex>& lock) {
   room_.wait(lock, [&] {
     return abandoned_ ||
            (pictures_under_way_ < pictures_under_way_max_ && slots_.size() < kSlotsMax);
   });
-  const auto ask = [&](const PictureRequest& request) {
-    jobs_.push_back({request, {}});
-    slots_.emplace_back(jobs_.back().done.get_future());
-    ++pictures_under_way_;
-    job_.notify_one();
-  };
-  if (const auto* request = std::get_if<FrameRequest>(&emission)) {
-    ask(*request);
-  } else if (const auto* sky = std::get_if<SkyRequest>(&emission)) {
-    ask(*sky);
-  } else if (const auto* truth = std::get_if<Truth>(&emission)) {
-    slots_.emplace_back(StreamItem(*truth));
-  } else if (const auto* imu = std::get_if<nav::ImuSample>(&emission)) {
-    slots_.emplace_back(StreamItem(nav::Measurement(*imu)));
-  } else if (const auto* light = std::get_if<nav::PolarizationSample>(&emission)) {
-    slots_.emplace_back(StreamItem(nav::Measurement(*light)));
-  } else {
-    slots_.emplace_back(StreamItem(nav::Measurement(std::get<nav::ReferencePose>(emission))));
-  }
-  ready_.notify_one();
   return !abandoned_;
 }
 
@@ -97,19 +127,22 @@ void MeasurementStream::TakePictures() {
 MeasurementStream::TimedPicture MeasurementStream::Take(const PictureRequest& request,
                                                         std::optional<StereoCamera>& camera) const {
   const auto* frame = std::get_if<FrameRequest>(&request);
-  if (frame != nullptr && !camera) {
+  const auto* frame_truth = std::get_if<FrameTruthRequest>(&request);
+  if ((frame != nullptr || frame_truth != nullptr) && !camera) {
     camera.emplace(simulator_.scene(), simulator_.sky(), *simulator_.true_stereo(),
                    *options_.sensors.stereo, key_.seed, key_.trial);
   }
   const auto begin = std::chrono::steady_clock::now();
   TimedPicture taken;
   if (frame != nullptr) {
-    taken = {.picture = camera->Capture(frame->T_WB, frame->stamp, frame->index),
-             .stage = "render"};
+    taken = {.picture = nav::Measurement(camera->Capture(*frame)), .stage = "render"};
+  } else if (frame_truth != nullptr) {
+    taken = {.picture = camera->CaptureTruth(*frame_truth), .stage = "ground_truth"};
   } else {
     const auto& sky = std::get<SkyRequest>(request);
-    taken = {.picture = simulator_.polarization_camera()->Take(sky.truth, sky.index),
-             .stage = "sky_camera"};
+    taken = {
+        .picture = nav::Measurement(simulator_.polarization_camera()->Take(sky.truth, sky.index)),
+        .stage = "sky_camera"};
   }
   const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
   taken.ms = ms.count();
@@ -133,7 +166,7 @@ std::optional<StreamItem> MeasurementStream::Next() {
   --pictures_under_way_;
   picture_ms_[taken.stage].push_back(taken.ms);
   room_.notify_one();
-  return StreamItem(std::move(taken.picture));
+  return std::move(taken.picture);
 }
 
 }  // namespace polnav::sim

@@ -18,11 +18,13 @@
 #include <vector>
 
 #include "nav/api/measurements.h"
+#include "sim/sensors/frame_truth.h"
 #include "sim/simulator.h"
 
 namespace polnav::sim {
 
-using StreamItem = std::variant<Truth, nav::Measurement>;
+// A frame's truth comes out when the next frame's place is known; the last frame has none.
+using StreamItem = std::variant<Truth, nav::Measurement, FrameTruth>;
 
 class MeasurementStream {
  public:
@@ -42,9 +44,9 @@ class MeasurementStream {
   }
 
  private:
-  using PictureRequest = std::variant<FrameRequest, SkyRequest>;
+  using PictureRequest = std::variant<FrameRequest, SkyRequest, FrameTruthRequest>;
   struct TimedPicture {
-    nav::Measurement picture;
+    StreamItem picture;
     const char* stage = "";  // key of picture_ms
     double ms = 0.0;
   };
@@ -59,10 +61,15 @@ class MeasurementStream {
   [[nodiscard]] TimedPicture Take(const PictureRequest& request,
                                   std::optional<StereoCamera>& camera) const;
   [[nodiscard]] bool Push(const Simulator::Emission& emission);
+  [[nodiscard]] bool PushFrame(const FrameRequest& request);
+  [[nodiscard]] bool Ask(const PictureRequest& request);
+  [[nodiscard]] bool Put(StreamItem item);
+  [[nodiscard]] bool WaitForRoom(std::unique_lock<std::mutex>& lock);
 
   SimulatorOptions options_;
   RunKey key_;
   Simulator simulator_;
+  std::optional<FrameRequest> last_frame_;  // only the simulator's thread uses it
   std::size_t pictures_under_way_max_;
 
   std::mutex mutex_;

@@ -124,8 +124,12 @@ std::vector<Simulator::Emission> Simulator::Step() {
     due.emplace_back(reference_->Sample(now, reference_clock_.index++));
   }
   if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
-    due.emplace_back(
-        FrameRequest{now.stamp, stereo_clock_.index++, now.T_WB, ConditionsAt(events_, now.stamp)});
+    due.emplace_back(FrameRequest{.stamp = now.stamp,
+                                  .index = stereo_clock_.index++,
+                                  .T_WB = now.T_WB,
+                                  .v_WB_m_s = now.v_WB_m_s,
+                                  .w_WB_B_rad_s = now.w_WB_B_rad_s,
+                                  .conditions = ConditionsAt(events_, now.stamp)});
   }
   if (polarization_camera_ && polarization_camera_clock_.Due(now.stamp)) {
     due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++});

@@ -16,6 +16,7 @@
 #include "nav/api/calibration.h"
 #include "nav/api/measurements.h"
 #include "sim/disturbances/schedule.h"
+#include "sim/sensors/frame_request.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/polarimeter.h"
 #include "sim/sensors/polarization_camera.h"
@@ -63,14 +64,6 @@ struct SimulatorOptions {
 struct RunKey {
   std::uint64_t seed = 1;
   std::uint64_t trial = 0;
-};
-
-// A picture pair to be taken: everything it depends on besides the world.
-struct FrameRequest {
-  nav::TimeNs stamp = 0;
-  std::uint64_t index = 0;
-  nav::Pose T_WB;
-  CameraConditions conditions;
 };
 
 // A picture of the sky to be taken.

@@ -12,16 +12,22 @@
 
 namespace polnav::nav {
 
-// Pinhole with radial-tangential (Brown-Conrady) distortion, OpenCV's order k1 k2 p1 p2.
+// How a camera's lens bends the rays (x, y, 1), r^2 = x^2 + y^2, theta = atan r:
+//   radtan       radial-tangential [Brown1971]: k1 k2 p1 p2 in OpenCV's order
+//   equidistant  [Kannala2006] k1 k2 k3 k4: at theta (1 + k1 theta^2 + ... + k4 theta^8) from the
+//                centre; OpenCV's "fisheye", Kalibr's "equidistant"
+enum class DistortionModel { kRadTan, kEquidistant };
+
 struct CameraCalibration {
+  DistortionModel model = DistortionModel::kRadTan;
   int width_px = 0;
   int height_px = 0;
   double fx_px = 0.0;
   double fy_px = 0.0;
   double cx_px = 0.0;  // centre of the top left pixel is (0, 0)
   double cy_px = 0.0;
-  std::array<double, 4> distortion{};
-  Pose T_BC;  // camera frame: x right, y down, z forward
+  std::array<double, 4> distortion{};  // of the model
+  Pose T_BC;                           // camera frame: x right, y down, z forward
 };
 
 struct StereoCalibration {

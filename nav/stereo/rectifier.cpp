@@ -32,7 +32,8 @@ StereoRectifier::StereoRectifier(const StereoCalibration& calibration) {
              .baseline_m = (right.T_BC.p - left.T_BC.p).norm(),
              .T_BC = {Eigen::Quaterniond(R_BC), left.T_BC.p}};
   const auto side = [&](const CameraCalibration& c) {
-    return Side{.intrinsics = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1},
+    return Side{.model = c.model,
+                .intrinsics = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1},
                 .distortion = {c.distortion[0], c.distortion[1], c.distortion[2], c.distortion[3]},
                 .rotation = ToCv(R_BC.transpose() * c.T_BC.q.toRotationMatrix())};
   };
@@ -46,6 +47,12 @@ std::vector<cv::Point2f> StereoRectifier::Rectify(const Side& side,
   if (raw.empty()) return rectified;
   const cv::Matx33d virtual_camera(camera_.f_px, 0, camera_.cx_px, 0, camera_.f_px, camera_.cy_px,
                                    0, 0, 1);
+  if (side.model == DistortionModel::kEquidistant) {
+    // Its ten Newton steps leave 1e-8 at any angle that a pinhole can still show.
+    cv::fisheye::undistortPoints(raw, rectified, side.intrinsics, side.distortion, side.rotation,
+                                 virtual_camera);
+    return rectified;
+  }
   // The distortion has no closed inverse; 1e-3 px is far below what tracking resolves.
   const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 1e-3);
   cv::undistortPoints(raw, rectified, side.intrinsics, side.distortion, side.rotation,

@@ -32,6 +32,7 @@ class StereoRectifier {
 
  private:
   struct Side {
+    DistortionModel model = DistortionModel::kRadTan;
     cv::Matx33d intrinsics;
     cv::Vec4d distortion;
     cv::Matx33d rotation;  // from the real camera's frame into the virtual one

@@ -1,8 +1,10 @@
 #include "sim/sensors/lens_warp.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
 #include "sim/sensors/lens.h"
 
@@ -12,7 +14,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kMargin_px = 2.0;  // bilinear interpolation reaches one pixel further
-constexpr int kSegments = 16;       // of each edge of the image
+constexpr double kSlack_rad = 3.0 * M_PI / 180.0;
+constexpr int kSegments = 16;  // of each edge of the image
 
 // Normalized coordinates along an edge (top, bottom, left, right) of a camera's image, t in [0, 1].
 Vector2d OnEdge(const nav::CameraCalibration& camera, int side, double t) {
@@ -32,7 +35,30 @@ Vector2d OnEdge(const nav::CameraCalibration& camera, int side, double t) {
 
 }  // namespace
 
+double AngleOfField(const nav::CameraCalibration& camera) {
+  double widest = 0.0;
+  for (int side = 0; side < 4; ++side) {
+    // The corners are the furthest from the axis; what is monotonic out to them is so everywhere.
+    for (const double t : {0.0, 1.0}) {
+      const Vector2d xy = OnEdge(camera, side, t);
+      double grown = 0.0;
+      for (int i = 1; i <= kSegments; ++i) {
+        const double radius = Distort(camera, xy * i / kSegments).norm();
+        if (!(radius > grown)) return std::nan("");
+        grown = radius;
+      }
+      widest = std::max(widest, std::atan(xy.norm()));
+    }
+  }
+  return widest;
+}
+
 PinholeView CoveringView(const std::vector<nav::CameraCalibration>& cameras, double focal_share) {
+  for (const nav::CameraCalibration& camera : cameras) {
+    if (!(AngleOfField(camera) <= kWidestAngle_rad + kSlack_rad)) {
+      throw std::logic_error("CoveringView: the lens sees further than a pinhole can show");
+    }
+  }
   constexpr double kFar = std::numeric_limits<double>::max();
   Vector2d low(kFar, kFar);
   Vector2d high(-kFar, -kFar);
@@ -104,6 +130,13 @@ LensWarp::LensWarp(const nav::CameraCalibration& camera, const PinholeView& view
 
 void LensWarp::Apply(const cv::Mat& pinhole, cv::Mat& distorted) const {
   cv::remap(pinhole, distorted, whole_, fraction_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+}
+
+void LensWarp::ApplyToRows(const cv::Mat& pinhole, const cv::Range& rows,
+                           cv::Mat& distorted) const {
+  cv::Mat strip = distorted.rowRange(rows);
+  cv::remap(pinhole, strip, whole_.rowRange(rows), fraction_.rowRange(rows), cv::INTER_LINEAR,
+            cv::BORDER_REPLICATE);
 }
 
 }  // namespace polnav::sim

@@ -43,7 +43,12 @@ nav::StereoCalibration NominalStereo(const StereoCameraOptions& options) {
   left.fy_px = options.focal_px;
   left.cx_px = 0.5 * (options.width_px - 1);
   left.cy_px = 0.5 * (options.height_px - 1);
-  left.distortion = {options.k1, options.k2, options.p1, options.p2};
+  if (options.model == "equidistant") {
+    left.model = nav::DistortionModel::kEquidistant;
+    left.distortion = {options.k1, options.k2, options.k3, options.k4};
+  } else {
+    left.distortion = {options.k1, options.k2, options.p1, options.p2};
+  }
   Eigen::Matrix3d R_BC;  // columns: the camera's right, down and forward axes in B
   R_BC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const Eigen::AngleAxisd pitch(nav::DegToRad(options.pitch_down_deg), Vector3d::UnitY());

@@ -2,8 +2,10 @@
 //
 // Raw, distorted, 8-bit grey pairs, linear in light. The renderer draws an ideal pinhole image that
 // covers the lens's view at 0.75 of its focal length (which stands in for the softness of a small
-// lens), a warp bends it, then shot and read noise are added. The exposure is an instant: no motion
-// blur, no rolling shutter. Both cameras look at the same instant with the same exposure.
+// lens), a warp bends it, then shot and read noise are added. Unless options say otherwise
+// (sim/sensors/shutter.h) the exposure is an instant: no motion blur, no rolling shutter. Both
+// cameras look at the same instants with the same exposure: a pair is synchronous to the
+// nanosecond.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +14,8 @@
 
 #include "nav/api/calibration.h"
 #include "nav/api/measurements.h"
+#include "sim/sensors/frame_request.h"
+#include "sim/sensors/frame_truth.h"
 #include "sim/sensors/stereo_options.h"
 #include "sim/world/scene.h"
 #include "sky/skylight.h"
@@ -34,11 +38,18 @@ class StereoCamera {
   StereoCamera(const StereoCamera&) = delete;
   StereoCamera& operator=(const StereoCamera&) = delete;
 
-  // Depends on its arguments alone. index: of the frame, for the noise.
+  // Depends on its argument alone.
+  [[nodiscard]] nav::StereoImages Capture(const FrameRequest& request);
+  // Of a camera that stands still, in clear air.
   [[nodiscard]] nav::StereoImages Capture(const nav::Pose& T_WB, nav::TimeNs stamp,
-                                          std::uint64_t index);
+                                          std::uint64_t index) {
+    return Capture({.stamp = stamp, .index = index, .T_WB = T_WB});
+  }
 
-  // The gain in use, given or found by the constructor.
+  // Of the left camera; of a camera made with options.ground_truth.
+  [[nodiscard]] FrameTruth CaptureTruth(const FrameTruthRequest& request);
+
+  // The gain in use when none is asked for, given or found by the constructor.
   [[nodiscard]] double exposure() const;
 
  private:

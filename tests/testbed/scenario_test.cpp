@@ -75,6 +75,28 @@ TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
             "compass_zenith; did you mean 'stereo'?");
 }
 
+TEST(Scenario, RefusesLensesThatCannotBeRendered) {
+  const auto lens = [](const std::string& keys) {
+    return ErrorWith("sensors.stereo={width_px: 672, height_px: 376, model: equidistant, " + keys +
+                     "}");
+  };
+  EXPECT_EQ(lens("focal_px: 330, k1: 0, k2: 0"), "no error");
+  EXPECT_NE(lens("focal_px: 300, k1: 0, k2: 0")
+                .find("sensors.stereo.focal_px: the picture's corners are 73.4 degrees from the "
+                      "axis; at most 70 can be rendered"),
+            std::string::npos);
+  EXPECT_NE(lens("focal_px: 330, k1: -0.3, k2: 0").find("folds back"), std::string::npos);
+  EXPECT_NE(ErrorWith("sensors.stereo={model: fisheye}").find("radtan, equidistant"),
+            std::string::npos);
+}
+
+TEST(Scenario, RefusesAnExposureLongerThanAFrame) {
+  EXPECT_NE(
+      ErrorWith("sensors.stereo={rate_hz: 20, exposure_time_s: 0.03, rolling_shutter_s: 0.03}")
+          .find("take longer than the time between two pictures"),
+      std::string::npos);
+}
+
 TEST(Scenario, RefusesDurationsThatAreNotWholeMilliseconds) {
   EXPECT_EQ(ErrorWith("duration_s=1.0005"),
             "--set duration_s=1.0005: duration_s: 1.0005 s is not a whole number of milliseconds");

@@ -55,9 +55,12 @@ int Run(const RunArguments& arguments, const Console& console, const ClosedLoop&
   OutputFolder folder(arguments.out.empty() ? "out" / stem : std::filesystem::path(arguments.out));
 
   Progress progress(console, scenario.name, arguments.quiet);
-  const RunRecord record = closed_loop(
-      scenario, {.seed = scenario.seed, .trial = 0, .render_threads = arguments.render_threads},
-      [&](double fraction) { progress.Show(fraction); });
+  RunOptions options{.seed = scenario.seed, .trial = 0, .render_threads = arguments.render_threads};
+  if (scenario.sensors.stereo && scenario.sensors.stereo->ground_truth) {
+    options.ground_truth_folder = folder.path() / "ground_truth";
+  }
+  const RunRecord record =
+      closed_loop(scenario, options, [&](double fraction) { progress.Show(fraction); });
   progress.Finish();
 
   const Json result = BuildResult(scenario, record, scenario.seed, arguments.level);

@@ -49,7 +49,26 @@ nav::PolarizationCameraCalibration FromJson(const Json& json) {
   return c;
 }
 
+Json ToJson(const nav::CameraCalibration& c) {
+  const bool fisheye = c.model == nav::DistortionModel::kEquidistant;
+  const Eigen::Vector3d& p = c.T_BC.p;
+  return {{"model", fisheye ? "equidistant" : "radtan"},
+          {"width_px", c.width_px},
+          {"height_px", c.height_px},
+          {"fx_px", c.fx_px},
+          {"fy_px", c.fy_px},
+          {"cx_px", c.cx_px},
+          {"cy_px", c.cy_px},
+          {"distortion", c.distortion},
+          {"q_BC_xyzw", {c.T_BC.q.x(), c.T_BC.q.y(), c.T_BC.q.z(), c.T_BC.q.w()}},
+          {"p_BC_m", {p.x(), p.y(), p.z()}}};
+}
+
 }  // namespace
+
+Json ToJson(const nav::StereoCalibration& calibration) {
+  return {{"left", ToJson(calibration.left)}, {"right", ToJson(calibration.right)}};
+}
 
 Json ToJson(const nav::PolarizationCameraCalibration& c) {
   const bool fisheye = c.lens.model == nav::LensModel::kEquidistant;

@@ -13,6 +13,9 @@ namespace polnav::testbed {
 
 [[nodiscard]] Json ToJson(const nav::PolarizationCameraCalibration& calibration);
 
+// The pair as ground_truth/cameras.json has it: intrinsics [px], distortion and its model, T_BC.
+[[nodiscard]] Json ToJson(const nav::StereoCalibration& calibration);
+
 // Throws InputError on a file that is not there or not such a calibration.
 [[nodiscard]] nav::PolarizationCameraCalibration ReadCameraFile(const std::filesystem::path& file);
 

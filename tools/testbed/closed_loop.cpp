@@ -12,6 +12,7 @@
 #include "sim/random.h"
 #include "tools/testbed/calibration_turn.h"
 #include "tools/testbed/estimators.h"
+#include "tools/testbed/ground_truth_files.h"
 #include "tools/testbed/memory_use.h"
 #include "tools/testbed/polarization_readings.h"
 #include "tools/testbed/stream_hash.h"
@@ -80,6 +81,11 @@ class Loop {
     const bool describe = std::any_of(run.begin(), run.end(), [&](const std::string& name) {
       return ClosesLoops(scenario, name);
     });
+    if (!options.ground_truth_folder.empty()) {
+      ground_truth_.emplace(
+          options.ground_truth_folder,
+          sim::DrawTrueStereo(*scenario.sensors.stereo, options.seed, options.trial));
+    }
     if (rig_.stereo) tracker_.emplace(scenario.estimators.stereo.tracker, *rig_.stereo, describe);
   }
 
@@ -93,10 +99,13 @@ class Loop {
       if (const auto* truth = std::get_if<sim::Truth>(&*item)) {
         Take(*truth);
         if (progress) progress(nav::ToSeconds(truth->stamp) / scenario_.duration_s);
+      } else if (const auto* frame = std::get_if<sim::FrameTruth>(&*item)) {
+        if (ground_truth_) ground_truth_->Write(*frame);
       } else {
         Take(std::get<nav::Measurement>(*item));
       }
     }
+    if (ground_truth_) ground_truth_->Commit();
     Finish(stream.picture_ms());
     record_.wall_s = MsSince(begin) * 1e-3;
     return std::move(record_);
@@ -208,6 +217,7 @@ class Loop {
   nav::TimeNs duration_;
   PolarizationReadings readings_;
   std::optional<nav::StereoTracker> tracker_;
+  std::optional<GroundTruthFiles> ground_truth_;
   std::vector<RunningEstimator> estimators_;
   std::map<std::string, Sha256> hashes_;
   RunRecord record_;

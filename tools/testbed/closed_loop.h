@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 
 #include "tools/testbed/run_record.h"
@@ -17,6 +18,9 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::uint64_t trial = 0;
   int render_threads = 1;
+  // Where the cameras' ground truth goes when sensors.stereo.ground_truth asks for it; empty:
+  // nowhere.
+  std::filesystem::path ground_truth_folder;
 };
 
 // progress: called now and then with the simulated fraction of the run, 0 to 1; may be empty.

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "sim/sensors/lens_warp.h"
 #include "sky/mosaic.h"
 #include "tools/testbed/disturbance_checks.h"
 #include "tools/testbed/estimators.h"
@@ -45,6 +46,27 @@ void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors)
   check("polarimeter", sensors.polarimeter);
   check("polarization_camera", sensors.polarization_camera);
   check("reference", sensors.reference);
+}
+
+void CheckStereo(const YamlDocument& document,
+                 const std::optional<sim::StereoCameraOptions>& stereo) {
+  if (!stereo) return;
+  const double field_rad = sim::AngleOfField(sim::NominalStereo(*stereo).left);
+  if (std::isnan(field_rad)) {
+    FailAt(document, "sensors.stereo.model",
+           fmt::format("with this distortion the {} lens folds back before the picture's corners",
+                       stereo->model));
+  }
+  if (field_rad > sim::kWidestAngle_rad) {
+    FailAt(document, "sensors.stereo.focal_px",
+           fmt::format("the picture's corners are {:.1f} degrees from the axis; at most {:.0f} can "
+                       "be rendered: a longer focal length or fewer pixels",
+                       nav::RadToDeg(field_rad), nav::RadToDeg(sim::kWidestAngle_rad)));
+  }
+  if (stereo->exposure_time_s + stereo->rolling_shutter_s > 1.0 / stereo->rate_hz) {
+    FailAt(document, "sensors.stereo.exposure_time_s",
+           "exposure and readout take longer than the time between two pictures");
+  }
 }
 
 void CheckVehicle(const YamlDocument& document, const sim::VehicleOptions& vehicle) {
@@ -174,6 +196,7 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckWorld(document, scenario.world);
   CheckVehicle(document, scenario.vehicle);
   CheckRates(document, scenario.sensors);
+  CheckStereo(document, scenario.sensors.stereo);
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckDisturbances(document, scenario);
   CheckOutages(document, scenario);
