@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/disturbances/on_the_road.h"
 #include "sim/random.h"
 #include "sim/render/lighting.h"
 
@@ -50,18 +51,18 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
                                          sky::ComputeSunArc(sky::SiteOf(options.site), *utc),
                                          SeedOf(key, "sky/clouds"), CloudPassages(events_));
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
-  BuildScene(options, key, duration);
+  BuildScene(
+      WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),
+      options.sensors, key, duration);
   EquipVehicle(options.sensors, key);
 }
 
 // Whoever looks at the sky sees the same scene hide it, whether cameras look at it too or not.
-void Simulator::BuildScene(const SimulatorOptions& options, const RunKey& key,
-                           nav::TimeNs duration) {
-  const SensorOptions& sensors = options.sensors;
-  const bool hides_sky =
-      (sensors.polarimeter || sensors.polarization_camera) && HidesSky(options.world);
+void Simulator::BuildScene(const WorldOptions& world, const SensorOptions& sensors,
+                           const RunKey& key, nav::TimeNs duration) {
+  const bool hides_sky = (sensors.polarimeter || sensors.polarization_camera) && HidesSky(world);
   if (!sensors.stereo && !hides_sky) return;
-  scene_ = BuildWorld(options.world, *track_, *terrain_, SeedOf(key, "world/plaza"),
+  scene_ = BuildWorld(world, *track_, *terrain_, SeedOf(key, "world/plaza"),
                       nav::ToSeconds(duration), sensors.stereo.has_value());
   if (!hides_sky) return;
   occlusion_ = std::make_unique<Occlusion>(

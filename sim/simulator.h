@@ -115,7 +115,8 @@ class Simulator {
   };
 
   [[nodiscard]] static Clock ClockOf(double rate_hz);
-  void BuildScene(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration);
+  void BuildScene(const WorldOptions& world, const SensorOptions& sensors, const RunKey& key,
+                  nav::TimeNs duration);
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
   std::vector<DisturbanceEvent> events_;

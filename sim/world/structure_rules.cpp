@@ -71,9 +71,10 @@ std::optional<StructureFault> FindFault(const std::vector<StructureOptions>& str
     for (std::size_t k = 0; k < i; ++k) {
       if (structure.kind == "canopy" || structures[k].kind == "canopy") continue;
       if (!Overlaps(structures[k], structure, lap_m)) continue;
+      const auto from_m = static_cast<int>(std::lround(structures[k].start_m));
       return StructureFault{
           i, "start_m",
-          "overlaps the " + structures[k].kind + " of world.structures." + std::to_string(k)};
+          "overlaps the " + structures[k].kind + " from " + std::to_string(from_m) + " m on"};
     }
   }
   return std::nullopt;

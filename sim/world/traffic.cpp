@@ -100,6 +100,25 @@ std::vector<ActorKey> Walk(int i, double walking_m_s, const StreetFrame& street,
                             .stance = Stance::kUpright});
 }
 
+Stance StanceOf(const std::string& kind) {
+  return kind == "pedestrian" ? Stance::kUpright : Stance::kOnWheels;
+}
+
+Actor MakeActor(const std::string& kind, std::string name, std::vector<ActorKey> path,
+                const ActorTextures& textures, Sample& random) {
+  if (kind == "pedestrian")
+    return MakePedestrian(std::move(name), std::move(path), textures, random);
+  if (kind == "bus") return MakeBus(std::move(name), std::move(path), textures);
+  return MakeCar(std::move(name), std::move(path), textures, random);
+}
+
+// Above the terrain: pavements lie higher than road and parking bay.
+double PavementLift(const StreetFrame& street, double offset_m) {
+  const bool on_road = offset_m < street.half_road_m() + kKerbWidth_m &&
+                       offset_m > -street.half_road_m() - kBayWidth_m;
+  return on_road ? 0.0 : kKerbHeight_m - 0.03;
+}
+
 }  // namespace
 
 std::vector<Actor> MakeTraffic(const TrafficOptions& options, const StreetFrame& street,
@@ -124,22 +143,35 @@ std::vector<Actor> MakeActors(const std::vector<ActorOptions>& options, const St
   for (std::size_t i = 0; i < options.size(); ++i) {
     const ActorOptions& actor = options[i];
     Sample random = stream.At(i);
-    const bool walks = actor.kind == "pedestrian";
-    std::vector<ActorKey> path =
-        AlongPolyline(street, {.points_m = actor.path_m,
-                               .speed_m_s = actor.speed_m_s,
-                               .begin_s = actor.start_s,
-                               .end_s = end_s,
-                               .loop = actor.loop,
-                               .stance = walks ? Stance::kUpright : Stance::kOnWheels});
-    std::string name = actor.kind + " of world.actors." + std::to_string(i);
-    if (walks) {
-      actors.push_back(MakePedestrian(std::move(name), std::move(path), textures, random));
-    } else if (actor.kind == "bus") {
-      actors.push_back(MakeBus(std::move(name), std::move(path), textures));
-    } else {
-      actors.push_back(MakeCar(std::move(name), std::move(path), textures, random));
-    }
+    std::vector<ActorKey> path = AlongPolyline(street, {.points_m = actor.path_m,
+                                                        .speed_m_s = actor.speed_m_s,
+                                                        .begin_s = actor.start_s,
+                                                        .end_s = end_s,
+                                                        .loop = actor.loop,
+                                                        .stance = StanceOf(actor.kind)});
+    actors.push_back(MakeActor(actor.kind, actor.kind + " of world.actors." + std::to_string(i),
+                               std::move(path), textures, random));
+  }
+  return actors;
+}
+
+std::vector<Actor> MakePassers(const std::vector<Passer>& passers, const StreetFrame& street,
+                               std::uint64_t seed, const ActorTextures& textures) {
+  const RandomStream stream(seed, 0, "world/passers");
+  std::vector<Actor> actors;
+  for (std::size_t i = 0; i < passers.size(); ++i) {
+    const Passer& passer = passers[i];
+    Sample random = stream.At(i);
+    std::vector<ActorKey> path = AlongRoad(street, {.s_m = passer.s_m,
+                                                    .at_s = passer.at_s,
+                                                    .offset_m = passer.offset_m,
+                                                    .speed_m_s = passer.speed_m_s,
+                                                    .begin_s = passer.begin_s,
+                                                    .end_s = passer.end_s,
+                                                    .lift_m = PavementLift(street, passer.offset_m),
+                                                    .stance = StanceOf(passer.kind)});
+    actors.push_back(MakeActor(passer.kind, passer.kind + " that passes " + std::to_string(i),
+                               std::move(path), textures, random));
   }
   return actors;
 }

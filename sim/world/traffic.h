@@ -56,6 +56,17 @@ struct ActorOptions {
   }
 };
 
+// Somebody who comes along the road for a time: at the instant at_s at arc length s_m.
+struct Passer {
+  std::string kind = "car";  // of ActorOptions
+  double s_m = 0.0;
+  double at_s = 0.0;
+  double offset_m = 0.0;   // to the left of the centre line
+  double speed_m_s = 8.0;  // along the road; negative: against the driving direction
+  double begin_s = 0.0;
+  double end_s = 60.0;
+};
+
 // Moves until end_s. The builder's scene has the actors' textures already.
 [[nodiscard]] std::vector<Actor> MakeTraffic(const TrafficOptions& options,
                                              const StreetFrame& street, std::uint64_t seed,
@@ -63,5 +74,8 @@ struct ActorOptions {
 [[nodiscard]] std::vector<Actor> MakeActors(const std::vector<ActorOptions>& options,
                                             const StreetFrame& street, std::uint64_t seed,
                                             double end_s, const ActorTextures& textures);
+[[nodiscard]] std::vector<Actor> MakePassers(const std::vector<Passer>& passers,
+                                             const StreetFrame& street, std::uint64_t seed,
+                                             const ActorTextures& textures);
 
 }  // namespace polnav::sim

@@ -20,7 +20,7 @@ bool HidesSky(const WorldOptions& options) {
   if (options.sky_view != "auto") return options.sky_view == "scene";
   const TrafficOptions& traffic = options.traffic;
   return !options.structures.empty() || !options.actors.empty() || options.scene_file ||
-         traffic.cars + traffic.buses + traffic.pedestrians > 0;
+         !options.passers.empty() || traffic.cars + traffic.buses + traffic.pedestrians > 0;
 }
 
 Scene BuildWorld(const WorldOptions& options, const Track& track, const Terrain& terrain,
@@ -37,6 +37,7 @@ Scene BuildWorld(const WorldOptions& options, const Track& track, const Terrain&
   Scene scene = builder.Take();
   Append(MakeTraffic(options.traffic, street, seed, end_s, textures), scene);
   Append(MakeActors(options.actors, street, seed, end_s, textures), scene);
+  Append(MakePassers(options.passers, street, seed, textures), scene);
   ScaleContrast(options.plaza.texture_contrast, scene);
   return scene;
 }

@@ -32,6 +32,7 @@ struct WorldOptions {
   // `auto`, the scene where there are structures, traffic, actors or a scene file. The bare plaza
   // reaches over no road, so that sensors that look at the zenith see the open sky there.
   std::string sky_view = "auto";
+  std::vector<Passer> passers;  // not a key: what the scenario's disturbances make pass
 
   template <typename Visitor>
   void Visit(Visitor& v) {

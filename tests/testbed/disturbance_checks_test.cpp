@@ -20,9 +20,10 @@ std::string ErrorOf(const std::string& disturbance, const std::string& more = ""
 }
 
 TEST(CheckDisturbances, AcceptsEachKind) {
-  for (const char* kind : {"{passing: {}}", "{darkness: {}}", "{overexposure: {}}", "{glare: {}}",
-                           "{fog: {}}", "{rain: {}}", "{dirt: {}}", "{cloud_passage: {}}",
-                           "{low_features: {}}", "{canopy: {}}", "{tunnel: {}}", "{bridge: {}}"}) {
+  for (const char* kind :
+       {"{passing: {}}", "{darkness: {}}", "{overexposure: {}}", "{glare: {}}", "{fog: {}}",
+        "{rain: {}}", "{dirt: {}}", "{cloud_passage: {}}", "{low_features: {start_m: 20}}",
+        "{canopy: {}}", "{tunnel: {start_m: 40}}", "{bridge: {}}"}) {
     EXPECT_EQ(ErrorOf(kind), "no error") << kind;
   }
 }
@@ -41,13 +42,15 @@ TEST(CheckDisturbances, RefusesWhatComesAfterTheEnd) {
   EXPECT_EQ(ErrorOf("{start_s: 10, fog: {}}", "", {{"duration_s=5", "--duration 5"}}), "no error");
 }
 
-TEST(CheckDisturbances, RefusesStretchesThatAreNotOnTheRoad) {
+TEST(CheckDisturbances, RefusesStretchesThatCannotStandOnTheRoad) {
   EXPECT_EQ(ErrorOf("{tunnel: {start_m: 400}}"),
-            "s.yaml:4: disturbances.0.tunnel.start_m: 400 m is past the end of the road, which is "
-            "377 m long");
+            "s.yaml:4: disturbances.0.tunnel.start_m: lies outside the track of 377 m");
   EXPECT_EQ(ErrorOf("{canopy: {length_m: 400}}"),
-            "s.yaml:4: disturbances.0.canopy.length_m: 400 m is longer than the road, which is 377 "
-            "m long");
+            "s.yaml:4: disturbances.0.canopy.length_m: reaches beyond the end of the track of 377 "
+            "m");
+  EXPECT_EQ(ErrorOf("{tunnel: {start_m: 60}}",
+                    "world: {structures: [{kind: bridge, start_m: 65, length_m: 8}]}\n"),
+            "s.yaml:5: disturbances.0.tunnel.start_m: overlaps the bridge from 65 m on");
   EXPECT_EQ(ErrorOf("{start_s: 3, canopy: {}}"),
             "s.yaml:4: disturbances.0.start_s: a stretch of road is there all the time: it has "
             "none");

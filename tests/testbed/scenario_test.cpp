@@ -218,7 +218,7 @@ TEST(Scenario, RefusesAStructureWhereItCannotStand) {
             "the cameras set their exposure");
   EXPECT_EQ(WorldError("  structures:\n    - {kind: tunnel, start_m: 50, length_m: 40}\n"
                        "    - {kind: bridge, start_m: 80, length_m: 4}\n"),
-            "s.yaml:5: world.structures.1.start_m: overlaps the tunnel of world.structures.0");
+            "s.yaml:5: world.structures.1.start_m: overlaps the tunnel from 50 m on");
 }
 
 TEST(Scenario, LooksForASceneFileBesideTheScenario) {

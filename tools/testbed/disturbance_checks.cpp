@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/disturbances/on_the_road.h"
+
 namespace polnav::testbed {
 namespace {
 
@@ -43,19 +45,13 @@ void CheckTimeless(const YamlDocument& document, const std::string& key, std::si
   }
 }
 
-void CheckStretch(const YamlDocument& document, const Scenario& scenario, const std::string& key,
-                  const sim::StretchOptions& stretch) {
-  const double lap_m = scenario.world.track.length_m;
-  if (stretch.start_m >= lap_m) {
-    FailAt(document, key + ".start_m",
-           fmt::format("{} m is past the end of the road, which is {} m long", stretch.start_m,
-                       lap_m));
-  }
-  if (stretch.length_m > lap_m) {
-    FailAt(
-        document, key + ".length_m",
-        fmt::format("{} m is longer than the road, which is {} m long", stretch.length_m, lap_m));
-  }
+// Can it stand on the road, with whatever stands there already?
+void CheckStretch(const YamlDocument& document, const std::string& key, double lap_m,
+                  const sim::StructureOptions& stretch,
+                  std::vector<sim::StructureOptions>& standing) {
+  standing.push_back(stretch);
+  const auto fault = sim::FindFault(standing, lap_m);
+  if (fault) FailAt(document, JoinKey(key, fault->key), fault->message);
 }
 
 void CheckPassing(const YamlDocument& document, const Scenario& scenario, const std::string& key,
@@ -78,7 +74,8 @@ void CheckTimes(const YamlDocument& document, const Scenario& scenario, const st
                      scenario.duration_s));
 }
 
-void CheckDisturbance(const YamlDocument& document, const Scenario& scenario, std::size_t index) {
+void CheckDisturbance(const YamlDocument& document, const Scenario& scenario, std::size_t index,
+                      std::vector<sim::StructureOptions>& standing) {
   const DisturbanceOptions& entry = scenario.disturbances[index];
   const std::string key = fmt::format("disturbances.{}", index);
   const std::vector<std::string> kinds = KindsOf(entry);
@@ -93,20 +90,19 @@ void CheckDisturbance(const YamlDocument& document, const Scenario& scenario, st
     FailAt(document, JoinKey(key, "cloud_passage"), "no cloud passes: sky.wind_m_s is 0");
   }
   if (entry.passing) CheckPassing(document, scenario, key, *entry.passing);
-  for (const auto& [name, stretch] :
-       {std::pair("low_features", entry.low_features), std::pair("canopy", entry.canopy),
-        std::pair("tunnel", entry.tunnel), std::pair("bridge", entry.bridge)}) {
-    if (!stretch) continue;
+  if (const auto stretch = sim::StructureOf(entry)) {
     CheckTimeless(document, key, index);
-    CheckStretch(document, scenario, JoinKey(key, name), *stretch);
+    CheckStretch(document, JoinKey(key, kinds.front()), scenario.world.track.length_m, *stretch,
+                 standing);
   }
 }
 
 }  // namespace
 
 void CheckDisturbances(const YamlDocument& document, const Scenario& scenario) {
+  std::vector<sim::StructureOptions> standing = scenario.world.structures;
   for (std::size_t i = 0; i < scenario.disturbances.size(); ++i) {
-    CheckDisturbance(document, scenario, i);
+    CheckDisturbance(document, scenario, i, standing);
   }
 }
 

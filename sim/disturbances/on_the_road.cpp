@@ -1,0 +1,75 @@
+#include "sim/disturbances/on_the_road.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace polnav::sim {
+namespace {
+
+constexpr double kSeenFrom_m = 120.0;
+constexpr double kLeastSpeed_m_s = 0.2;  // of the difference: slower ones never come
+
+struct NominalMotion {
+  double s_m = 0.0;
+  double speed_m_s = 0.0;
+};
+
+NominalMotion NominalAt(const VehicleOptions& vehicle, const Track& track, double t_s) {
+  if (vehicle.turntable) {
+    return {.s_m = track.Project(vehicle.turntable->position_m.head<2>()).s_m};
+  }
+  const CarOptions car = vehicle.car.value_or(CarOptions{});
+  return {.s_m = car.speed_m_s * std::max(0.0, t_s - car.start_delay_s),
+          .speed_m_s = car.speed_m_s};
+}
+
+}  // namespace
+
+std::optional<StructureOptions> StructureOf(const DisturbanceOptions& entry) {
+  for (const auto& [kind, stretch] :
+       {std::pair("plain_wall", entry.low_features), std::pair("canopy", entry.canopy),
+        std::pair("tunnel", entry.tunnel), std::pair("bridge", entry.bridge)}) {
+    if (!stretch) continue;
+    return StructureOptions{
+        .kind = kind, .start_m = stretch->start_m, .length_m = stretch->length_m};
+  }
+  return std::nullopt;
+}
+
+std::vector<Passer> PassersOf(const std::vector<DisturbanceEvent>& events,
+                              const VehicleOptions& vehicle, const Track& track) {
+  std::vector<Passer> passers;
+  for (const DisturbanceEvent& event : events) {
+    if (!event.what.passing) continue;
+    const PassingOptions& who = *event.what.passing;
+    for (int k = 0; k < who.count; ++k) {
+      const double alongside_s =
+          event.start_s + (k + 0.5) / who.count * (event.end_s - event.start_s);
+      const NominalMotion own = NominalAt(vehicle, track, alongside_s);
+      const double closing_m_s = std::abs(who.speed_m_s - own.speed_m_s);
+      if (closing_m_s < kLeastSpeed_m_s) continue;
+      const double around_s = kSeenFrom_m / closing_m_s;
+      passers.push_back({.kind = who.kind,
+                         .s_m = own.s_m,
+                         .at_s = alongside_s,
+                         .offset_m = who.offset_m,
+                         .speed_m_s = who.speed_m_s,
+                         .begin_s = std::max(0.0, alongside_s - around_s),
+                         .end_s = alongside_s + around_s});
+    }
+  }
+  return passers;
+}
+
+WorldOptions WithDisturbances(WorldOptions world, const std::vector<DisturbanceOptions>& entries,
+                              const std::vector<DisturbanceEvent>& events,
+                              const VehicleOptions& vehicle, const Track& track) {
+  for (const DisturbanceOptions& entry : entries) {
+    if (const auto structure = StructureOf(entry)) world.structures.push_back(*structure);
+  }
+  world.passers = PassersOf(events, vehicle, track);
+  return world;
+}
+
+}  // namespace polnav::sim
