@@ -20,13 +20,9 @@ HeadingFusion::HeadingFusion(const PolarizationOptions& options,
     : options_(options), calibration_(calibration), sun_(std::move(sun)) {}
 
 Outcome HeadingFusion::Add(const PolarizationSample& sample) {
-  const auto light = DecodeSixChannels(sample);
-  if (!light || light->dop < options_.min_dop ||
-      std::abs(light->pair_sum) > options_.max_pair_sum) {
-    return Outcome::kUnusable;
-  }
-  const Eigen::Vector3d e_S(std::cos(light->axis_rad), std::sin(light->axis_rad), 0.0);
-  waiting_.push_back({sample.stamp, calibration_.T_BS.q * e_S});
+  const auto e_B = UsableEVector(sample, options_, calibration_);
+  if (!e_B) return Outcome::kUnusable;
+  waiting_.push_back({sample.stamp, *e_B});
   return Outcome::kUsed;
 }
 

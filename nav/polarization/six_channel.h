@@ -4,10 +4,12 @@
 // intensity, alpha = 0, 60, 120 degrees. phi is an axis: it repeats every half turn.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <optional>
 
+#include "nav/api/calibration.h"
 #include "nav/api/measurements.h"
+#include "nav/polarization/options.h"
 
 namespace polnav::nav {
 
@@ -19,5 +21,11 @@ struct PolarizedLight {
 
 // Nothing when a pair sees no light.
 [[nodiscard]] std::optional<PolarizedLight> DecodeSixChannels(const PolarizationSample& sample);
+
+// The light's E-vector in B, a unit vector whose sign means nothing. Nothing when the light is too
+// little polarized or the channels contradict each other.
+[[nodiscard]] std::optional<Eigen::Vector3d> UsableEVector(
+    const PolarizationSample& sample, const PolarizationOptions& options,
+    const PolarimeterCalibration& calibration);
 
 }  // namespace polnav::nav

@@ -65,14 +65,14 @@ TEST(Scenario, RefusesAnEstimatorWithoutItsSensors) {
 TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
   EXPECT_EQ(ErrorWith("estimators.run=[sterio]"),
             "--set estimators.run=[sterio]: estimators.run: 'sterio' is not one of: stereo, "
-            "stereo_polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
+            "stereo_polarization, polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
             "compass_zenith; did you mean 'stereo'?");
   EXPECT_EQ(ErrorWith("estimators.run=[stereo, stereo]"),
             "--set estimators.run=[stereo, stereo]: estimators.run: 'stereo' is listed twice");
   EXPECT_EQ(ErrorWith("estimators.close_loops=[stereos]"),
             "--set estimators.close_loops=[stereos]: estimators.close_loops: 'stereos' is not one "
-            "of: stereo, stereo_polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
-            "compass_zenith; did you mean 'stereo'?");
+            "of: stereo, stereo_polarization, polarization, compass_lsq, compass_ransac_tls, "
+            "compass_stokes, compass_zenith; did you mean 'stereo'?");
 }
 
 TEST(Scenario, RefusesLensesThatCannotBeRendered) {

@@ -16,7 +16,9 @@ std::string Number(const Json& tree, const std::string& path, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-std::string Fixed(double value) { return fmt::format("{:.2f}", value); }
+std::string Fixed(std::optional<double> value) {
+  return value ? fmt::format("{:.2f}", *value) : "-";
+}
 
 // One table of errors beside the paper's. mean: the path of the mean that is shown.
 std::string ErrorTable(const char* title, const Json& result, const std::string& errors,
@@ -27,8 +29,8 @@ std::string ErrorTable(const char* title, const Json& result, const std::string&
                Number(scores, errors + ".rmse", 3), Number(scores, errors + ".std", 3)});
   }
   for (const PaperRow& row : paper.rows) {
-    table.Add({fmt::format("  {}: {}", paper.paper, row.label), row.max ? Fixed(*row.max) : "-",
-               Fixed(row.mean), Fixed(row.rmse), Fixed(row.std)});
+    table.Add({fmt::format("  {}: {}", paper.paper, row.label), Fixed(row.max), Fixed(row.mean),
+               Fixed(row.rmse), Fixed(row.std)});
   }
   return table.Text() + "\n";
 }

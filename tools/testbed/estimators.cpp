@@ -27,6 +27,10 @@ AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario, co
     return nav::CompassEstimator(options, rig.polarization_camera.value(), SunFor(scenario.site),
                                  start);
   }
+  if (info.needs_polarimeter && !info.needs_stereo) {
+    return nav::PolarimeterCompass(scenario.estimators.polarization, rig.polarimeter.value(),
+                                   SunFor(scenario.site), start);
+  }
   std::optional<nav::HeadingFusion> polarization;
   if (info.needs_polarimeter) {
     polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),

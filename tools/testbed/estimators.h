@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "nav/polarization/compass_estimator.h"
+#include "nav/polarization/polarimeter_compass.h"
 #include "nav/stereo/estimator.h"
 #include "tools/testbed/scenario.h"
 
@@ -21,7 +22,7 @@ struct EstimatorInfo {
   bool heading_only = false;  // a compass
 };
 
-inline constexpr std::array<EstimatorInfo, 6> kEstimators{{
+inline constexpr std::array<EstimatorInfo, 7> kEstimators{{
     {.name = "stereo",
      .description = "stereo visual odometry in a sliding window, without the sky",
      .needs_stereo = true},
@@ -29,6 +30,10 @@ inline constexpr std::array<EstimatorInfo, 6> kEstimators{{
      .description = "stereo and polarized skylight, tightly coupled [Chu2021]",
      .needs_stereo = true,
      .needs_polarimeter = true},
+    {.name = "polarization",
+     .description = "heading from single readings of the point polarimeter, level [Chu2021]",
+     .needs_polarimeter = true,
+     .heading_only = true},
     {.name = "compass_lsq",
      .description = "heading from sky images: least squares over all pixels, Fan2020's baseline",
      .needs_polarization_camera = true,
@@ -51,7 +56,8 @@ inline constexpr std::array<EstimatorInfo, 6> kEstimators{{
 [[nodiscard]] const EstimatorInfo* FindInfo(std::string_view name);
 [[nodiscard]] const EstimatorInfo& InfoOf(std::string_view name);
 
-using AnyEstimator = std::variant<nav::StereoEstimator, nav::CompassEstimator>;
+using AnyEstimator =
+    std::variant<nav::StereoEstimator, nav::PolarimeterCompass, nav::CompassEstimator>;
 
 // The scenario names it and the rig carries what it needs.
 [[nodiscard]] AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario,

@@ -12,7 +12,10 @@ bool Cites(const Scenario& scenario, std::string_view paper) {
 }  // namespace
 
 PaperTable PaperHeadings(const Scenario& scenario) {
-  if (Cites(scenario, kChu2021)) return {.paper = kChu2021, .rows = kChu2021Heading_deg};
+  if (Cites(scenario, kChu2021)) {
+    if (scenario.vehicle.turntable) return {.paper = kChu2021, .rows = kChu2021Turntable_deg};
+    return {.paper = kChu2021, .rows = kChu2021Heading_deg};
+  }
   if (Cites(scenario, kFan2020)) {
     const bool many = scenario.sky.clouds == "many_clouds";
     return {.paper = kFan2020,
@@ -23,7 +26,9 @@ PaperTable PaperHeadings(const Scenario& scenario) {
 }
 
 PaperTable PaperPositions(const Scenario& scenario) {
-  if (Cites(scenario, kChu2021)) return {.paper = kChu2021, .rows = kChu2021Position_m};
+  if (Cites(scenario, kChu2021) && !scenario.vehicle.turntable) {
+    return {.paper = kChu2021, .rows = kChu2021Position_m};
+  }
   return {};
 }
 

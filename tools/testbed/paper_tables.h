@@ -13,10 +13,7 @@ namespace polnav::testbed {
 
 struct PaperRow {
   std::string_view label;
-  std::optional<double> max;
-  double mean = 0.0;
-  double rmse = 0.0;
-  double std = 0.0;
+  std::optional<double> max, mean, rmse, std;  // absent: not reported
 };
 
 // Rows to show beside ours, the method that the others are compared with first.
@@ -35,6 +32,13 @@ inline constexpr std::array<PaperRow, 2> kChu2021Heading_deg{{
 inline constexpr std::array<PaperRow, 2> kChu2021Position_m{{
     {"stereo SLAM", 5.12, 0.91, 0.99, 0.42},
     {"stereo + polarization", 3.55, 0.83, 0.93, 0.40},
+}};
+
+// Turntable with cars passing [Chu2021, experiment A]. One "angle offset" for the whole turn is all
+// it reports.
+inline constexpr std::array<PaperRow, 2> kChu2021Turntable_deg{{
+    {"stereo SLAM, angle offset", 4.28, {}, {}, {}},
+    {"polarization, angle offset", 1.59, {}, {}, {}},
 }};
 
 // Pictures of the sky on a turntable [Fan2020, table 1].

@@ -37,11 +37,12 @@ std::string ErrorTable(const Json& result, const std::string& errors, const std:
     first = false;
   }
   for (const PaperRow& row : paper.rows) {
-    const auto fixed = [](double v) { return fmt::format("{:.2f}", v); };
+    const auto fixed = [](std::optional<double> v) {
+      return v ? fmt::format("{:.2f}", *v) : std::string("–");
+    };
     const bool is_base = row.label == paper.rows.front().label;
-    table.rows.push_back({fmt::format("{}: {}", paper.paper, row.label),
-                          row.max ? fixed(*row.max) : "–", fixed(row.mean), fixed(row.rmse),
-                          fixed(row.std),
+    table.rows.push_back({fmt::format("{}: {}", paper.paper, row.label), fixed(row.max),
+                          fixed(row.mean), fixed(row.rmse), fixed(row.std),
                           is_base ? "" : Change(row.rmse, paper.rows.front().rmse)});
     table.row_class.emplace_back("paper");
   }
