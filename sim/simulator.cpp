@@ -47,9 +47,9 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
   track_ = std::make_unique<Track>(options.world.track);
   terrain_ =
       std::make_unique<Terrain>(options.world.terrain, *track_, SeedOf(key, "world/terrain"));
-  sky_ = std::make_unique<sky::WorldSky>(options.sky,
-                                         sky::ComputeSunArc(sky::SiteOf(options.site), *utc),
-                                         SeedOf(key, "sky/clouds"), CloudPassages(events_));
+  sky_ = std::make_unique<sky::WorldSky>(
+      options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"),
+      CloudPassages(events_, options.vehicle, *track_));
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
   BuildScene(
       WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),

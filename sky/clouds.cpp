@@ -34,9 +34,10 @@ constexpr double kTurnedThreshold = 1.5;  // of its channel: one patch of twenty
 constexpr double kTurnedRamp = 0.3;       // from upright to turned
 constexpr double kTurnedStrength = 0.5;   // of a turned patch over an upright one
 
-// A passing cloud, in parts of its radius.
-constexpr double kEdge = 0.3;        // over which its depth rises
-constexpr double kRaggedness = 0.1;  // of the edge, a sigma of the field
+// A passing cloud; the edge in parts of its radius.
+constexpr double kHalfBreadth_m = 500.0;  // across the wind
+constexpr double kEdge = 0.3;             // over which its depth rises
+constexpr double kRaggedness = 0.1;       // of the edge, a sigma of the field
 
 // Air between clouds.
 constexpr double kAirLight = 0.5;         // deep among clouds, over the clear sky's own radiance
@@ -136,8 +137,10 @@ CloudLayer::CloudLayer(const CloudWeather& weather, const Eigen::Vector2d& wind_
     throw std::logic_error("CloudLayer: no cloud passes without wind");
   }
   for (const CloudPassage& passage : passages) {
-    passing_.push_back(
-        {-wind_m_s * passage.middle_s, 0.5 * wind * passage.duration_s, passage.optical_depth});
+    const double along_m = 0.5 * wind * passage.duration_s;
+    passing_.push_back({passage.over_m - wind_m_s * passage.middle_s,
+                        {along_m, std::max(along_m, kHalfBreadth_m)},
+                        passage.optical_depth});
   }
 }
 
@@ -164,7 +167,11 @@ CloudColumn CloudLayer::Look(const Eigen::Vector3d& ray_W, const Eigen::Vector3d
     column.air_lit_from = from / std::max(1.0, from.norm());  // no more polarized than at all
   }
   for (const Passing& cloud : passing_) {
-    const double inside = 1.0 - (place_m - cloud.center_m).norm() / cloud.radius_m;
+    const Eigen::Vector2d wind = wind_m_s_.normalized();
+    const Eigen::Vector2d from_center = place_m - cloud.center_m;
+    const Eigen::Vector2d parts(from_center.dot(wind),
+                                wind.x() * from_center.y() - wind.y() * from_center.x());
+    const double inside = 1.0 - parts.cwiseQuotient(cloud.radius_m).norm();
     depth += cloud.depth * Step((inside + kRaggedness * n) / kEdge);
   }
   if (depth > kThinnest) {

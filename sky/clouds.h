@@ -50,12 +50,13 @@ struct CloudWeather {
 // clear, thin_cloud, few_clouds, many_clouds or overcast; throws std::invalid_argument otherwise.
 [[nodiscard]] CloudWeather WeatherOf(const std::string& preset);
 
-// A cloud that the wind carries over the world's origin at an instant. Its edge is ragged as the
-// layer's field is.
+// A cloud that the wind carries over a place at an instant. It is a kilometre across the wind, or
+// round where its way over the place is longer. Its edge is ragged as the layer's field is.
 struct CloudPassage {
-  double middle_s = 0.0;        // when it stands overhead
-  double duration_s = 20.0;     // from edge to edge
-  double optical_depth = 10.0;  // vertical, inside
+  Eigen::Vector2d over_m = Eigen::Vector2d::Zero();  // the place: east, north
+  double middle_s = 0.0;                             // when it stands overhead
+  double duration_s = 20.0;                          // from edge to edge
+  double optical_depth = 10.0;                       // vertical, inside
 };
 
 // What a layer does along one ray. The default is no cloud.
@@ -84,10 +85,10 @@ class CloudLayer {
                                  double t_s) const;
 
  private:
-  // A disc in the layer, carried along with it.
+  // An ellipse in the layer, carried along with it.
   struct Passing {
     Eigen::Vector2d center_m;  // east, north; overhead of the origin at time zero would be (0, 0)
-    double radius_m;
+    Eigen::Vector2d radius_m;  // along and across the wind
     double depth;
   };
 

@@ -77,7 +77,7 @@ struct LensCoverOptions {
   }
 };
 
-// The wind carries a cloud over the place.
+// The wind carries a cloud over the vehicle: half way through it stands overhead.
 struct CloudPassageOptions {
   double optical_depth = 10.0;  // vertical
 

@@ -62,6 +62,23 @@ std::vector<Passer> PassersOf(const std::vector<DisturbanceEvent>& events,
   return passers;
 }
 
+std::vector<sky::CloudPassage> CloudPassages(const std::vector<DisturbanceEvent>& events,
+                                             const VehicleOptions& vehicle, const Track& track) {
+  std::vector<sky::CloudPassage> passages;
+  for (const DisturbanceEvent& event : events) {
+    if (!event.what.cloud_passage) continue;
+    const double middle_s = 0.5 * (event.start_s + event.end_s);
+    const Eigen::Vector2d over_m = vehicle.turntable
+                                       ? Eigen::Vector2d(vehicle.turntable->position_m.head<2>())
+                                       : track.At(NominalAt(vehicle, track, middle_s).s_m).p_m;
+    passages.push_back({.over_m = over_m,
+                        .middle_s = middle_s,
+                        .duration_s = event.end_s - event.start_s,
+                        .optical_depth = event.what.cloud_passage->optical_depth});
+  }
+  return passages;
+}
+
 WorldOptions WithDisturbances(WorldOptions world, const std::vector<DisturbanceOptions>& entries,
                               const std::vector<DisturbanceEvent>& events,
                               const VehicleOptions& vehicle, const Track& track) {

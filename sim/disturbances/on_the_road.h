@@ -1,4 +1,4 @@
-// Who and what do the disturbances put on the road?
+// Who and what do the disturbances put on the road and over it?
 //
 // Stretches of road become structures, whoever passes becomes an actor that comes along the road.
 // Where the vehicle is then, is only known nominally: a car at its speed after its start delay (it
@@ -11,6 +11,7 @@
 #include "sim/disturbances/schedule.h"
 #include "sim/vehicle/vehicle.h"
 #include "sim/world/world.h"
+#include "sky/clouds.h"
 
 namespace polnav::sim {
 
@@ -22,7 +23,11 @@ namespace polnav::sim {
 [[nodiscard]] std::vector<Passer> PassersOf(const std::vector<DisturbanceEvent>& events,
                                             const VehicleOptions& vehicle, const Track& track);
 
-// The world with both.
+// Clouds that stand over the vehicle half way through their events.
+[[nodiscard]] std::vector<sky::CloudPassage> CloudPassages(
+    const std::vector<DisturbanceEvent>& events, const VehicleOptions& vehicle, const Track& track);
+
+// The world with structures and passers.
 [[nodiscard]] WorldOptions WithDisturbances(WorldOptions world,
                                             const std::vector<DisturbanceOptions>& entries,
                                             const std::vector<DisturbanceEvent>& events,

@@ -72,15 +72,4 @@ CameraConditions ConditionsAt(const std::vector<DisturbanceEvent>& events, nav::
   return now;
 }
 
-std::vector<sky::CloudPassage> CloudPassages(const std::vector<DisturbanceEvent>& events) {
-  std::vector<sky::CloudPassage> passages;
-  for (const DisturbanceEvent& event : events) {
-    if (!event.what.cloud_passage) continue;
-    passages.push_back({.middle_s = 0.5 * (event.start_s + event.end_s),
-                        .duration_s = event.end_s - event.start_s,
-                        .optical_depth = event.what.cloud_passage->optical_depth});
-  }
-  return passages;
-}
-
 }  // namespace polnav::sim

@@ -7,7 +7,6 @@
 #include "nav/api/time.h"
 #include "sim/disturbances/disturbance_options.h"
 #include "sim/sensors/camera_conditions.h"
-#include "sky/clouds.h"
 
 namespace polnav::sim {
 
@@ -28,8 +27,5 @@ struct DisturbanceEvent {
 // duration where that is shorter; effects that overlap add up.
 [[nodiscard]] CameraConditions ConditionsAt(const std::vector<DisturbanceEvent>& events,
                                             nav::TimeNs stamp);
-
-[[nodiscard]] std::vector<sky::CloudPassage> CloudPassages(
-    const std::vector<DisturbanceEvent>& events);
 
 }  // namespace polnav::sim

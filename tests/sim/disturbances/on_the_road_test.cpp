@@ -71,6 +71,18 @@ TEST(PassersOf, NeverComeAtTheVehiclesOwnSpeed) {
   EXPECT_TRUE(Passing({.speed_m_s = 6.0}, {.car = CarOptions{.speed_m_s = 6.0}}).empty());
 }
 
+TEST(CloudPassages, StandOverTheCarHalfWay) {
+  DisturbanceOptions entry{.start_s = 10.0, .duration_s = 30.0};
+  entry.cloud_passage = CloudPassageOptions{.optical_depth = 7.0};
+  const auto passages = CloudPassages(ScheduleDisturbances({entry}, 100.0, 1, 0),
+                                      {.car = CarOptions{.speed_m_s = 6.0}}, Loop().track);
+  ASSERT_EQ(passages.size(), 1U);
+  EXPECT_EQ(passages[0].middle_s, 25.0);
+  EXPECT_EQ(passages[0].duration_s, 30.0);
+  EXPECT_EQ(passages[0].optical_depth, 7.0);
+  EXPECT_LT((passages[0].over_m - Loop().track.At(6.0 * 23.0).p_m).norm(), 1e-9);
+}
+
 TEST(WithDisturbances, StretchesStandOnTheRoad) {
   DisturbanceOptions walls;
   walls.low_features = StretchOptions{.start_m = 50.0, .length_m = 40.0};

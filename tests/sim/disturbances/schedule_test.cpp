@@ -90,15 +90,5 @@ TEST(ConditionsAt, DarkenByPowers) {
   EXPECT_NEAR(At({dark}, 0.5).light_share, 0.1, 1e-12);
 }
 
-TEST(CloudPassages, StandOverheadHalfWay) {
-  DisturbanceOptions entry{.start_s = 10.0, .duration_s = 30.0};
-  entry.cloud_passage = CloudPassageOptions{.optical_depth = 7.0};
-  const auto passages = CloudPassages(ScheduleDisturbances({entry}, 100.0, 1, 0));
-  ASSERT_EQ(passages.size(), 1U);
-  EXPECT_EQ(passages[0].middle_s, 25.0);
-  EXPECT_EQ(passages[0].duration_s, 30.0);
-  EXPECT_EQ(passages[0].optical_depth, 7.0);
-}
-
 }  // namespace
 }  // namespace polnav::sim
