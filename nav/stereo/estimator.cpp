@@ -17,6 +17,14 @@ Matrix6d StartCovariance(const StartPrior& start) {
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
+// What constant velocity misses within dt, of (dp, dtheta).
+Eigen::Matrix<double, 6, 1> MotionSigmas(double dt_s) {
+  Eigen::Matrix<double, 6, 1> sigmas;
+  sigmas << Eigen::Vector3d::Constant(kCoastSpeedSigma_m_s * dt_s),
+      Eigen::Vector3d::Constant(kCoastRateSigma_rad_s * dt_s);
+  return sigmas;
+}
+
 }  // namespace
 
 StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
@@ -54,8 +62,10 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Pose expected = PredictPose(features.stamp);
   const std::vector<LandmarkView> views = RejectMoving(MatchLandmarks(features), expected, report);
-  const auto solution = SolvePose(camera_, views, expected, solver_, options_.min_inliers);
   const bool starting = window_.keyframes.empty();
+  std::optional<PosePrior> prior;
+  if (step_ > 0) prior = {expected, MotionSigmas(ToSeconds(features.stamp - stamp_))};
+  const auto solution = SolvePose(camera_, views, expected, solver_, options_.min_inliers, prior);
   if (solution) {
     Follow(*solution, views);
     levelling_.AddMotion(features.stamp, motion_);
@@ -143,9 +153,7 @@ void StereoEstimator::Follow(const PoseSolution& solution, const std::vector<Lan
 void StereoEstimator::Coast(const Pose& expected, TimeNs stamp) {
   const double dt = ToSeconds(stamp - stamp_);
   T_WB_ = expected;
-  Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << Eigen::Vector3d::Constant(kCoastSpeedSigma_m_s * dt),
-      Eigen::Vector3d::Constant(kCoastRateSigma_rad_s * dt);
+  const auto sigmas = MotionSigmas(dt);
   covariance_ += Matrix6d(sigmas.cwiseAbs2().asDiagonal());
 }
 

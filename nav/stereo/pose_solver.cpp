@@ -13,8 +13,14 @@ struct Normal {
 };
 
 Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>& views,
-                 const Pose& T_WB, const PoseSolverOptions& options) {
+                 const Pose& T_WB, const PoseSolverOptions& options,
+                 const std::optional<PosePrior>& prior) {
   Normal n;
+  if (prior) {
+    const Eigen::Matrix<double, 6, 1> information = prior->sigmas.cwiseAbs2().cwiseInverse();
+    n.H = information.asDiagonal();
+    n.g = information.cwiseProduct(Difference(T_WB, prior->T_WB));
+  }
   for (const LandmarkView& view : views) {
     const auto e = Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);
     if (!e) continue;
@@ -30,11 +36,12 @@ Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>&
 
 std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
                                       const std::vector<LandmarkView>& views, const Pose& T_WB,
-                                      const PoseSolverOptions& options, int min_inliers) {
+                                      const PoseSolverOptions& options, int min_inliers,
+                                      const std::optional<PosePrior>& prior) {
   if (static_cast<int>(views.size()) < min_inliers) return std::nullopt;
   PoseSolution solution{.T_WB = T_WB};
   for (int i = 0; i < options.max_iterations; ++i) {
-    const Normal n = Linearize(camera, views, solution.T_WB, options);
+    const Normal n = Linearize(camera, views, solution.T_WB, options, prior);
     const Eigen::LDLT<Matrix6d> solver(n.H);
     if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
     const Eigen::Matrix<double, 6, 1> step = -solver.solve(n.g);
@@ -53,7 +60,7 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
   }
   solution.inliers = static_cast<int>(inliers.size());
   if (solution.inliers < min_inliers) return std::nullopt;
-  const Normal n = Linearize(camera, inliers, solution.T_WB, options);
+  const Normal n = Linearize(camera, inliers, solution.T_WB, options, prior);
   const Eigen::LDLT<Matrix6d> solver(n.H);
   if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
   solution.T_WB = Perturb(solution.T_WB, -solver.solve(n.g));

@@ -27,6 +27,12 @@ struct PoseSolverOptions {
   int max_iterations = 10;
 };
 
+// What motion is known to be possible: the pose is this one, within sigmas of (dp, dtheta) in W.
+struct PosePrior {
+  Pose T_WB;
+  Eigen::Matrix<double, 6, 1> sigmas;
+};
+
 struct PoseSolution {
   Pose T_WB;
   std::vector<bool> inlier;  // one a view
@@ -34,11 +40,10 @@ struct PoseSolution {
   Matrix6d covariance = Matrix6d::Zero();  // of (dp, dtheta) in W, landmarks taken as known
 };
 
-// Starts from T_WB. Nothing when fewer than min_inliers agree or the geometry is degenerate.
-[[nodiscard]] std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
-                                                    const std::vector<LandmarkView>& views,
-                                                    const Pose& T_WB,
-                                                    const PoseSolverOptions& options,
-                                                    int min_inliers);
+// Starts from T_WB; with few views the prior decides. Nothing when fewer than min_inliers agree or
+// the geometry is degenerate.
+[[nodiscard]] std::optional<PoseSolution> SolvePose(
+    const RectifiedCamera& camera, const std::vector<LandmarkView>& views, const Pose& T_WB,
+    const PoseSolverOptions& options, int min_inliers, const std::optional<PosePrior>& prior = {});
 
 }  // namespace polnav::nav

@@ -39,7 +39,7 @@ TEST(PolarimeterCompass, FollowsAWholeTurnFromACoarseStart) {
   PolarimeterCompass compass = Compass(DegToRad(40.0));
   for (int i = 0; i <= 360; ++i) {
     const double heading = DegToRad(i);
-    const Report report = compass.Process(Reading(i * kNsPerMs, heading, 0.5));
+    const Report report = compass.Process(Reading(i * 1'000'000, heading, 0.5));
     ASSERT_TRUE(report.estimate);
     EXPECT_NEAR(WrapPi(CompassHeading(report.estimate->T_WB.q) - heading), 0.0, 1e-9);
   }
