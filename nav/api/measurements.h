@@ -86,4 +86,18 @@ using Measurement = std::variant<ImuSample, StereoImages, StereoFeatures, Polari
   return std::visit([](const auto& m) { return m.stamp; }, measurement);
 }
 
+// The sensor's name in scenarios and results.
+[[nodiscard]] inline const char* StreamName(const Measurement& measurement) {
+  struct Namer {
+    const char* operator()(const ImuSample&) const { return "imu"; }
+    const char* operator()(const StereoImages&) const { return "stereo"; }
+    const char* operator()(const StereoFeatures&) const { return "stereo_features"; }
+    const char* operator()(const PolarizationSample&) const { return "polarimeter"; }
+    const char* operator()(const PolarizationImage&) const { return "polarization_camera"; }
+    const char* operator()(const OpticalFlowSample&) const { return "flow"; }
+    const char* operator()(const ReferencePose&) const { return "reference"; }
+  };
+  return std::visit(Namer{}, measurement);
+}
+
 }  // namespace polnav::nav

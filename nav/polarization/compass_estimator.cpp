@@ -12,6 +12,8 @@ CompassEstimator::CompassEstimator(const CompassOptions& options,
 Report CompassEstimator::Process(const Measurement& measurement) {
   const auto* picture = std::get_if<PolarizationImage>(&measurement);
   if (picture == nullptr) return {};
+  if (newest_ && picture->stamp <= *newest_) return {.outcome = Outcome::kUnusable};  // late
+  newest_ = picture->stamp;
   const CompassReading reading = compass_.Read(picture->mosaic, sun_(picture->stamp));
   if (reading.status != CompassStatus::kHeading && reading.status != CompassStatus::kHalfTurn) {
     return {.outcome = Outcome::kUnusable};

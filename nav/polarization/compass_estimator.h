@@ -5,6 +5,8 @@
 // CompassOptions::tilt_sigma_deg of doubt. Position means nothing in the estimate.
 #pragma once
 
+#include <optional>
+
 #include "nav/api/estimate.h"
 #include "nav/api/measurements.h"
 #include "nav/polarization/compass.h"
@@ -17,13 +19,15 @@ class CompassEstimator {
   CompassEstimator(const CompassOptions& options, const PolarizationCameraCalibration& calibration,
                    SunModel sun, const StartPrior& start);
 
-  // An estimate for each picture in which a heading was found.
+  // An estimate for each picture in which a heading was found. Unusable: a picture that is not
+  // newer than all before.
   [[nodiscard]] Report Process(const Measurement& measurement);
 
  private:
   Compass compass_;
   SunModel sun_;
   double last_rad_;  // heading
+  std::optional<TimeNs> newest_;
 };
 
 }  // namespace polnav::nav

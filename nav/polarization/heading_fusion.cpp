@@ -22,6 +22,9 @@ HeadingFusion::HeadingFusion(const PolarizationOptions& options,
 Outcome HeadingFusion::Add(const PolarizationSample& sample) {
   const auto e_B = UsableEVector(sample, options_, calibration_);
   if (!e_B) return Outcome::kUnusable;
+  const auto same = [&](const Reading& r) { return r.stamp == sample.stamp; };
+  const bool late = advanced_to_ && sample.stamp < *advanced_to_;  // no attitude is kept for it
+  if (late || std::any_of(waiting_.begin(), waiting_.end(), same)) return Outcome::kUnusable;
   waiting_.push_back({sample.stamp, *e_B});
   return Outcome::kUsed;
 }
@@ -50,6 +53,7 @@ int HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs
     innovation_sum_rad_ += innovation;
   }
   std::erase_if(waiting_, [&](const Reading& r) { return !later(r); });
+  advanced_to_ = to;
   return gated;
 }
 

@@ -28,7 +28,8 @@ class HeadingFusion {
   HeadingFusion(const PolarizationOptions& options, const PolarimeterCalibration& calibration,
                 SunModel sun);
 
-  // Keeps the reading until the attitude at its stamp is known.
+  // Keeps the reading until the attitude at its stamp is known. Unusable: too little polarized, a
+  // channel that does not fit the others, older than the newest frame, or the same once more.
   Outcome Add(const PolarizationSample& sample);
 
   // Attitudes at two frames; uses the readings up to the later one. Returns how many were gated.
@@ -55,6 +56,7 @@ class HeadingFusion {
   double innovation_sum_rad_ = 0.0;
   int innovations_ = 0;
   std::optional<TimeNs> last_edge_;
+  std::optional<TimeNs> advanced_to_;  // the newest frame
 };
 
 }  // namespace polnav::nav

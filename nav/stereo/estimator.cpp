@@ -58,6 +58,10 @@ Report StereoEstimator::Process(const Measurement& measurement) {
 
 Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   Report report{.outcome = Outcome::kUsed, .features = static_cast<int>(features.features.size())};
+  if (!window_.keyframes.empty() && features.stamp <= stamp_) {  // late, or the same once more
+    report.outcome = Outcome::kUnusable;
+    return report;
+  }
   const TimeNs before = window_.keyframes.empty() ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Pose expected = PredictPose(features.stamp);

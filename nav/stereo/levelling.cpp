@@ -18,7 +18,8 @@ void Levelling::Add(const ImuSample& sample) {
 
 void Levelling::AddMotion(TimeNs stamp, const Pose& motion) {
   const bool has_force = force_count_ > 0;
-  if (!has_force && frames_.empty()) frames_.push_back({stamp, Pose{}, Eigen::Vector3d::Zero()});
+  // Without a force the interval's impulse would miss a part: it begins anew.
+  if (!has_force) frames_.assign(1, {stamp, Pose{}, Eigen::Vector3d::Zero()});
   if (has_force) {
     const Pose before = frames_.empty() ? Pose{} : frames_.back().pose;
     frames_.push_back({stamp, before * motion, force_sum_ / force_count_});

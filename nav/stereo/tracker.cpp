@@ -64,10 +64,17 @@ StereoTracker::StereoTracker(const TrackerOptions& options, const StereoCalibrat
                              bool describe)
     : options_(options), rectifier_(calibration), describe_(describe) {}
 
+bool StereoTracker::Accepts(const StereoImages& images) const {
+  if (images.left.empty() || images.right.empty()) return false;
+  if (newest_.left.empty()) return true;
+  return images.stamp > newest_.stamp && cv::norm(images.left, newest_.left, cv::NORM_INF) > 0.0;
+}
+
 StereoFeatures StereoTracker::Track(const StereoImages& images) {
   if (images.left.type() != CV_8UC1 || images.left.size() != images.right.size()) {
     throw std::logic_error("StereoTracker: needs two 8-bit grey images of one size");
   }
+  newest_ = images;
   const Pyramid left = BuildPyramid(images.left, options_);
   const Pyramid right = BuildPyramid(images.right, options_);
   if (!pyramid_.empty()) {

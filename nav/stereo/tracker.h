@@ -22,6 +22,11 @@ class StereoTracker {
   StereoTracker(const TrackerOptions& options, const StereoCalibration& calibration,
                 bool describe = false);
 
+  // False: not to be tracked. One picture of the pair is missing, the stamp is not after the newest
+  // one's, or the left picture is the newest one's to the last bit, which noise forbids: a frozen
+  // driver, not a standing vehicle.
+  [[nodiscard]] bool Accepts(const StereoImages& images) const;
+
   [[nodiscard]] StereoFeatures Track(const StereoImages& images);
 
   // Where the followed points are in the newest raw left image [px].
@@ -53,6 +58,7 @@ class StereoTracker {
   TrackerOptions options_;
   StereoRectifier rectifier_;
   bool describe_;
+  StereoImages newest_;
   std::uint64_t frame_ = 0;                      // number of the newest one
   Pyramid pyramid_;                              // of its left image
   std::map<std::uint64_t, Pyramid> references_;  // left images by frame number

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "nav/stereo/tracker.h"
+#include "sim/faults/fault_injector.h"
 #include "sim/measurement_stream.h"
 #include "sim/random.h"
 #include "tools/testbed/calibration_turn.h"
@@ -76,6 +77,7 @@ class Loop {
         options_(options),
         rig_(RigFor(scenario, options)),
         duration_(nav::FromSeconds(scenario.duration_s)),
+        faults_(scenario.faults, rig_, options.seed, options.trial),
         readings_(rig_.polarimeter, SunFor(scenario.site)) {
     const auto& run = scenario.estimators.run;
     const bool describe = std::any_of(run.begin(), run.end(), [&](const std::string& name) {
@@ -102,9 +104,12 @@ class Loop {
       } else if (const auto* frame = std::get_if<sim::FrameTruth>(&*item)) {
         if (ground_truth_) ground_truth_->Write(*frame);
       } else {
-        Take(std::get<nav::Measurement>(*item));
+        for (const nav::Measurement& arrived : faults_.Take(std::get<nav::Measurement>(*item))) {
+          Take(arrived);
+        }
       }
     }
+    for (const nav::Measurement& arrived : faults_.Flush()) Take(arrived);
     if (ground_truth_) ground_truth_->Commit();
     Finish(stream.picture_ms());
     record_.wall_s = MsSince(begin) * 1e-3;
@@ -157,6 +162,12 @@ class Loop {
   // The front end works once for all estimators: it does not depend on what they believe.
   void TakeImages(const nav::StereoImages& images) {
     if (estimators_.empty()) return;
+    if (!tracker_->Accepts(images)) {
+      for (RunningEstimator& e : estimators_) {
+        e.run.counts.Add({.outcome = nav::Outcome::kUnusable});
+      }
+      return;
+    }
     const auto begin = Clock::now();
     const nav::Measurement features = tracker_->Track(images);
     record_.timing["front_end"].ms.push_back(MsSince(begin));
@@ -215,6 +226,7 @@ class Loop {
   RunOptions options_;
   nav::Rig rig_;
   nav::TimeNs duration_;
+  sim::FaultInjector faults_;
   PolarizationReadings readings_;
   std::optional<nav::StereoTracker> tracker_;
   std::optional<GroundTruthFiles> ground_truth_;

@@ -1,5 +1,6 @@
 #include "tools/testbed/polarization_readings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,8 +23,12 @@ void PolarizationReadings::Add(const nav::PolarizationSample& sample) {
 std::vector<HeadingReading> PolarizationReadings::ErrorsAgainst(
     const std::vector<sim::Truth>& truth) const {
   std::vector<HeadingReading> errors;
+  std::vector<Reading> readings = readings_;  // they may have arrived in another order
+  std::stable_sort(readings.begin(), readings.end(),
+                   [](const Reading& a, const Reading& b) { return a.stamp < b.stamp; });
   std::size_t next = 1;
-  for (const Reading& reading : readings_) {
+  for (const Reading& reading : readings) {
+    if (truth.empty() || reading.stamp < truth.front().stamp) continue;
     while (next < truth.size() && truth[next].stamp < reading.stamp) ++next;
     if (next >= truth.size()) break;
     const sim::Truth& a = truth[next - 1];

@@ -12,6 +12,7 @@
 #include "sky/mosaic.h"
 #include "tools/testbed/disturbance_checks.h"
 #include "tools/testbed/estimators.h"
+#include "tools/testbed/fault_checks.h"
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
 #include "tools/testbed/option_tree.h"
@@ -200,6 +201,7 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckDisturbances(document, scenario);
   CheckOutages(document, scenario);
+  CheckFaults(document, scenario);
   CheckEstimators(document, scenario);
   CheckCriteria(document, scenario);
   return scenario;

@@ -11,6 +11,7 @@
 #include "nav/polarization/compass_options.h"
 #include "nav/polarization/options.h"
 #include "nav/stereo/options.h"
+#include "sim/faults/fault_options.h"
 #include "sim/simulator.h"
 #include "sky/skylight.h"
 #include "sky/sun.h"
@@ -84,6 +85,7 @@ struct Scenario {
   sim::VehicleOptions vehicle;
   sim::SensorOptions sensors;
   std::vector<sim::DisturbanceOptions> disturbances;
+  std::vector<sim::FaultOptions> faults;
   EstimatorOptions estimators;
   std::vector<Criterion> criteria;
 
@@ -100,6 +102,7 @@ struct Scenario {
     v("vehicle", vehicle);
     v("sensors", sensors);
     v("disturbances", disturbances);
+    v("faults", faults);
     v("estimators", estimators);
     v("criteria", criteria);
   }

@@ -72,17 +72,4 @@ void HashTruth(const sim::Truth& truth, Sha256& hash) {
   HashVector(truth.w_WB_B_rad_s, hash);
 }
 
-const char* StreamName(const nav::Measurement& measurement) {
-  struct Namer {
-    const char* operator()(const nav::ImuSample&) const { return "imu"; }
-    const char* operator()(const nav::StereoImages&) const { return "stereo"; }
-    const char* operator()(const nav::StereoFeatures&) const { return "stereo_features"; }
-    const char* operator()(const nav::PolarizationSample&) const { return "polarimeter"; }
-    const char* operator()(const nav::PolarizationImage&) const { return "polarization_camera"; }
-    const char* operator()(const nav::OpticalFlowSample&) const { return "flow"; }
-    const char* operator()(const nav::ReferencePose&) const { return "reference"; }
-  };
-  return std::visit(Namer{}, measurement);
-}
-
 }  // namespace polnav::testbed

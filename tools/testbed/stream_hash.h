@@ -11,7 +11,4 @@ namespace polnav::testbed {
 void HashMeasurement(const nav::Measurement& measurement, Sha256& hash);
 void HashTruth(const sim::Truth& truth, Sha256& hash);
 
-// The stream that a measurement belongs to: the sensor's key in the scenario.
-[[nodiscard]] const char* StreamName(const nav::Measurement& measurement);
-
 }  // namespace polnav::testbed

@@ -112,7 +112,7 @@ std::vector<std::size_t> Thin(const std::vector<double>& values, std::size_t max
   return indices;
 }
 
-Json ChartData(const RunRecord& record) {
+Json ChartData(const RunRecord& record, const std::vector<sim::FaultOptions>& faults) {
   const Trajectory truth = TrajectoryOf(record.truth);
   Json data;
   data["end_s"] = record.sim_duration_s;
@@ -123,6 +123,12 @@ Json ChartData(const RunRecord& record) {
   }
   data["readings"] = ReadingData(record.polarization_readings);
   data["memory"] = MemoryData(record);
+  data["faults"] = Json::array();
+  for (const sim::FaultOptions& fault : faults) {
+    const double end_s =
+        fault.duration_s ? fault.start_s + *fault.duration_s : data["end_s"].get<double>();
+    data["faults"].push_back({{"begin", fault.start_s}, {"end", end_s}});
+  }
   return data;
 }
 

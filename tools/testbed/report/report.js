@@ -81,6 +81,22 @@
     },
   };
 
+  // Where a sensor was at fault, behind the lines; darker where faults overlap.
+  const faultBands = {
+    id: "faultBands",
+    beforeDatasetsDraw(chart) {
+      const { left, right, top, bottom } = chart.chartArea;
+      chart.ctx.save();
+      chart.ctx.fillStyle = faint("--soft", 0.13);
+      for (const fault of run.faults) {
+        const from = Math.max(left, chart.scales.x.getPixelForValue(fault.begin));
+        const to = Math.min(right, chart.scales.x.getPixelForValue(fault.end));
+        if (to > from) chart.ctx.fillRect(from, top, to - from, bottom - top);
+      }
+      chart.ctx.restore();
+    },
+  };
+
   function drawTrajectory() {
     const sets = [line("truth", points(run.truth.x, run.truth.y), color("--truth"),
                        { borderDash: [6, 4], borderWidth: 1.5, order: -1 })];
@@ -109,7 +125,7 @@
     });
     if (top === 0) top = 1;
     draw("heading", sets, "time [s]", "heading error [\u00b0]",
-         { y: { min: -top, max: top }, x: wholeRun });
+         { y: { min: -top, max: top }, x: wholeRun, plugins: [faultBands] });
   }
 
   function drawPosition() {
@@ -119,14 +135,15 @@
       sets.push(line(e.name, points(e.position.t, e.position.error), color(slot(i))));
     });
     draw("position", sets, "time [s]", "position error [m]",
-         { y: { beginAtZero: true }, x: wholeRun });
+         { y: { beginAtZero: true }, x: wholeRun, plugins: [faultBands] });
   }
 
   function drawReadings() {
     const sets = [line("one reading of the polarimeter", points(run.readings.t, run.readings.error),
                        color("--paper"),
                        { showLine: false, pointRadius: 1.4, borderWidth: 0 })];
-    draw("readings", sets, "time [s]", "heading error [\u00b0]", { x: wholeRun });
+    draw("readings", sets, "time [s]", "heading error [\u00b0]",
+         { x: wholeRun, plugins: [faultBands] });
   }
 
   function drawMemory() {

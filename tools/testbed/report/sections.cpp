@@ -55,6 +55,18 @@ std::string StartText(std::string utc) {
   return utc;
 }
 
+// "probability 0.5, hold_s 0.2": what is not zero.
+std::string SettingText(const Json& settings) {
+  std::string text;
+  for (const auto& [key, value] : settings.items()) {
+    const bool zero = value == Json(0.0) || value == Json({0.0, 0.0, 0.0});
+    const bool all = value == Json("both") || (key == "channel" && value == Json(-1));
+    if (zero || all) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value.dump());
+  }
+  return text;
+}
+
 std::string Text(const Json& result, const std::string& path, const char* format) {
   const std::optional<double> value = MetricAt(result, path);
   return value ? fmt::format(fmt::runtime(format), *value) : "–";
@@ -131,6 +143,21 @@ std::string ChartSections(const ReportInput& input) {
     html += Chart("memory", "Memory", "Of the whole process, simulator included.");
   }
   return html + "</div>";
+}
+
+std::string FaultSection(const ReportInput& input) {
+  if (input.scenario.faults.empty()) return "";
+  HtmlTable table{.rows = {{"sensor", "fault", "from [s]", "to [s]", "with"}},
+                  .text_columns = true};
+  for (const sim::FaultOptions& fault : input.scenario.faults) {
+    const char* kind = sim::NameOf(sim::KindsGiven(fault).at(0));
+    table.rows.push_back(
+        {fault.sensor, kind, fmt::format("{:g}", fault.start_s),
+         fault.duration_s ? fmt::format("{:g}", fault.start_s + *fault.duration_s) : "the end",
+         SettingText(OptionValues(fault)[kind])});
+  }
+  return "<section><h2>Faults</h2>" + table.Html() +
+         "<p class=\"soft small\">Shaded in the charts over time.</p></section>";
 }
 
 std::string PictureSection(const ReportInput& input) {

@@ -15,6 +15,7 @@ namespace polnav::testbed {
 [[nodiscard]] std::string ChartSections(const ReportInput& input);
 [[nodiscard]] std::string ErrorSections(const ReportInput& input);
 [[nodiscard]] std::string CriteriaSection(const ReportInput& input);
+[[nodiscard]] std::string FaultSection(const ReportInput& input);  // empty without faults
 [[nodiscard]] std::string PictureSection(const ReportInput& input);
 [[nodiscard]] std::string TimingAndStreamSections(const ReportInput& input);
 [[nodiscard]] std::string AgainSection(const ReportInput& input);  // how to run it again
