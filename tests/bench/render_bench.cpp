@@ -1,0 +1,116 @@
+// How many stereo pairs a second, on one core?
+//
+// The whole of StereoCamera::Capture (render, read back, lens, noise) along one lap of five_laps,
+// with shadows and twenty cars and people on the way. The range is the number of meshes: 1 is the
+// scene as it is, 10 adds nine more of everything where the camera does not look.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "sim/simulator.h"
+#include "sim/world/scene_builder.h"
+
+namespace polnav::sim {
+namespace {
+
+// The world of scenarios/five_laps.yaml.
+SimulatorOptions FiveLaps() {
+  SimulatorOptions options;
+  options.site = {.latitude_deg = 38.832,
+                  .longitude_deg = 121.503,
+                  .altitude_m = 20.0,
+                  .utc = "2020-11-11T07:00:00Z"};
+  options.sky.clear.model = "berry";
+  options.sky.thin_cloud_cover = 0.05;
+  options.world.terrain = {.slope_deg = 1.0, .camber_deg = 1.5};
+  options.sensors.stereo = StereoCameraOptions{};
+  return options;
+}
+
+// Cars that drive the loop the other way, on the left lane, evenly spread.
+void AddTraffic(int count, const Track& track, const Terrain& terrain, Scene& scene) {
+  constexpr double kStep_s = 0.5;
+  for (int i = 0; i < count; ++i) {
+    SceneBuilder builder;
+    builder.AddBox({.foot_m = {0, 0, 0.3}, .length_m = 4.4, .width_m = 1.8, .height_m = 0.6}, 0,
+                   0.5, 0.8);
+    builder.AddBox({.foot_m = {-0.3, 0, 0.9},
+                    .length_m = 2.4,
+                    .width_m = 1.7,
+                    .height_m = 0.6,
+                    .top_scale = 0.8},
+                   0, 0.5, 0.4);
+    Actor actor{.meshes = builder.Take().meshes};
+    for (double t_s = 0.0; t_s < 80.0; t_s += kStep_s) {
+      const Track::Point on = track.At(i * track.length_m() / count - 7.0 * t_s);
+      const Eigen::Vector2d p = on.p_m + 2.0 * Eigen::Vector2d(-on.tangent.y(), on.tangent.x());
+      const double yaw = std::atan2(-on.tangent.y(), -on.tangent.x());
+      actor.path.push_back(
+          {nav::FromSeconds(t_s),
+           {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())),
+            {p.x(), p.y(), terrain.Height(p.x(), p.y())}}});
+    }
+    scene.actors.push_back(actor);
+  }
+}
+
+// The same meshes again, beyond the far plane and all around.
+void AddCopies(int copies, Scene& scene) {
+  const std::size_t count = scene.meshes.size();
+  for (int copy = 0; copy < copies; ++copy) {
+    const double angle = 2.0 * M_PI * copy / copies;
+    const Eigen::Vector3f shift(static_cast<float>(900.0 * std::cos(angle)),
+                                static_cast<float>(900.0 * std::sin(angle)), 0.0F);
+    for (std::size_t i = 0; i < count; ++i) {
+      Mesh mesh = scene.meshes[i];
+      for (Vertex& v : mesh.vertices) v.p_W_m += shift;
+      scene.meshes.push_back(std::move(mesh));
+    }
+  }
+}
+
+std::vector<FrameRequest> OneLap(Simulator& simulator) {
+  std::vector<FrameRequest> frames;
+  while (simulator.truth().stamp < nav::FromSeconds(65.0)) {
+    for (const Simulator::Emission& emission : simulator.Step()) {
+      const auto* frame = std::get_if<FrameRequest>(&emission);
+      if (frame != nullptr && frame->index % 5 == 0) frames.push_back(*frame);
+    }
+  }
+  return frames;
+}
+
+void RenderStereo(benchmark::State& state, int width_px, int height_px, double focal_px) {
+  SimulatorOptions options = FiveLaps();
+  options.sensors.stereo->width_px = width_px;
+  options.sensors.stereo->height_px = height_px;
+  options.sensors.stereo->focal_px = focal_px;
+  Simulator simulator(options, {});
+  Scene scene = simulator.scene();
+  const Track track(options.world.track);
+  AddTraffic(20, track, Terrain(options.world.terrain, track, 1), scene);
+  AddCopies(static_cast<int>(state.range(0)) - 1, scene);
+  const std::vector<FrameRequest> lap = OneLap(simulator);
+  StereoCamera camera(scene, simulator.sky(), *simulator.true_stereo(), *options.sensors.stereo, 1,
+                      0);
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const FrameRequest& frame = lap[next++ % lap.size()];
+    benchmark::DoNotOptimize(camera.Capture(frame.T_WB, frame.stamp, frame.index));
+  }
+  state.counters["pairs_per_s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+void BM_RenderStereo(benchmark::State& state, int width_px, int height_px, double focal_px) {
+  RenderStereo(state, width_px, height_px, focal_px);
+}
+BENCHMARK_CAPTURE(BM_RenderStereo, vga, 672, 376, 350.0)
+    ->Arg(1)
+    ->Arg(10)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_RenderStereo, hd, 1280, 720, 667.0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace polnav::sim
