@@ -83,4 +83,9 @@ double SkyInstant::Transmittance(const Eigen::Vector3d& ray_W,
   return clouds_->Look(AboveHorizon(ray_W), observer_W, t_s_).transmittance;
 }
 
+double WorldSky::Transmittance(const Eigen::Vector3d& ray_W, const Eigen::Vector3d& observer_W,
+                               double t_s) const {
+  return clouds_.Look(AboveHorizon(ray_W), observer_W, t_s).transmittance;
+}
+
 }  // namespace polnav::sky

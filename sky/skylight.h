@@ -109,6 +109,10 @@ class WorldSky {
     return At(t_s).Look(ray_W, observer_W);
   }
 
+  // As SkyInstant's.
+  [[nodiscard]] double Transmittance(const Eigen::Vector3d& ray_W,
+                                     const Eigen::Vector3d& observer_W, double t_s) const;
+
   [[nodiscard]] Eigen::Vector3d sun_W(double t_s = 0.0) const { return sun_.At(t_s); }
 
  private:

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/render/pinhole_view.h"
 
@@ -45,6 +47,18 @@ class Frustum {
     if (center_C.z() < kNear_m - radius || center_C.z() > kFar_m + radius) return false;
     for (const Eigen::Vector3d& n : inward_) {
       if (n.dot(center_C) < -radius) return false;
+    }
+    return true;
+  }
+
+  // A cone of directions about the eye; direction_C: unit vector.
+  [[nodiscard]] bool MayShowDirections(const Eigen::Vector3d& direction_C,
+                                       double radius_rad) const {
+    // The cone's cap on the unit sphere lies in a ball of this radius about its middle direction.
+    const double reach = 2.0 * std::sin(0.5 * std::min(radius_rad, std::numbers::pi));
+    if (direction_C.z() < -reach) return false;
+    for (const Eigen::Vector3d& n : inward_) {
+      if (n.dot(direction_C) < -reach) return false;
     }
     return true;
   }

@@ -30,7 +30,8 @@ OSMesaContext CreateContext() {
 
 GLuint CompileShader(const GlFunctions& gl, GLenum kind, const char* source) {
   const GLuint shader = gl.CreateShader(kind);
-  gl.ShaderSource(shader, 1, &source, nullptr);
+  const char* const parts[] = {"#version 330 core\n", source};
+  gl.ShaderSource(shader, 2, parts, nullptr);
   gl.CompileShader(shader);
   GLint ok = 0;
   gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);

@@ -15,15 +15,17 @@ namespace polnav::sim {
 
 // clang-format off
 #define POLNAV_GL_FUNCTIONS(X) \
-  X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) \
-  X(BindVertexArray) X(BufferData) X(CheckFramebufferStatus) X(Clear) X(CompileShader) \
-  X(CreateProgram) X(CreateShader) X(CullFace) X(DepthFunc) X(Disable) X(DrawElements) \
-  X(Enable) X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FrontFace) \
+  X(ActiveTexture) X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) \
+  X(BindTexture) X(BindVertexArray) X(BufferData) X(BufferSubData) X(CheckFramebufferStatus) \
+  X(Clear) X(CompileShader) X(CreateProgram) X(CreateShader) X(CullFace) X(DeleteBuffers) \
+  X(DeleteVertexArrays) X(DepthFunc) X(Disable) X(DrawBuffer) X(DrawElements) X(Enable) \
+  X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(FrontFace) \
   X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) \
   X(GenerateMipmap) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
-  X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(ReadPixels) \
-  X(RenderbufferStorage) X(ShaderSource) X(TexImage2D) X(TexParameterf) X(TexParameteri) \
-  X(Uniform1f) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
+  X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(MultiDrawElements) X(PixelStorei) X(PolygonOffset) \
+  X(ReadBuffer) X(ReadPixels) X(RenderbufferStorage) X(ShaderSource) X(TexImage2D) \
+  X(TexParameterf) X(TexParameteri) X(Uniform1f) X(Uniform1fv) X(Uniform1i) X(Uniform3f) \
+  X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
 // clang-format on
 
 // gl.Clear(...) is glClear(...).
@@ -41,7 +43,7 @@ class GlContext {
   void MakeCurrent();
 
   [[nodiscard]] const GlFunctions& gl() const { return gl_; }
-  // Vertex and fragment source to a linked program.
+  // Vertex and fragment source, without their version, to a linked program.
   [[nodiscard]] GLuint LinkProgram(const char* vertex_source, const char* fragment_source) const;
 
  private:

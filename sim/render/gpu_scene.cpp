@@ -1,8 +1,11 @@
 #include "sim/render/gpu_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <stdexcept>
+
+#include "sim/render/gpu_buffers.h"
 
 namespace polnav::sim {
 namespace {
@@ -10,39 +13,71 @@ namespace {
 struct LitVertex {
   Eigen::Vector3f p_W;
   Eigen::Vector2f uv;
-  float light;
+  Eigen::Vector2f light;  // from sky and from sun
 };
 
-void* Offset(std::size_t bytes) { return reinterpret_cast<void*>(bytes); }
+// Triangles on their way into the buffers. A vertex in the sun and in the shade is two.
+class LitMeshes {
+ public:
+  LitMeshes(const Lighting& lighting, const SunLitTriangles& sunlit)
+      : lighting_(lighting), sunlit_(sunlit) {}
 
-void Attribute(const GlFunctions& gl, GLuint location, GLint components, std::size_t stride,
-               std::size_t offset) {
-  gl.EnableVertexAttribArray(location);
-  gl.VertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                         Offset(offset));
+  // Appends those of the mesh whose light is, or is not, up to the shadow map.
+  void Append(const Mesh& mesh, bool shadow_edge) {
+    std::vector<std::array<std::uint32_t, 2>> placed(mesh.vertices.size(), {kNone, kNone});
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const SunLitness light = LightOf(mesh, i);
+      if ((light == SunLitness::kMixed) != shadow_edge) continue;
+      const std::size_t lit = light == SunLitness::kDark ? 0 : 1;
+      for (std::size_t k = i; k < i + 3; ++k) {
+        std::uint32_t& at = placed[mesh.indices[k]][lit];
+        if (at == kNone) at = Place(mesh, mesh.vertices[mesh.indices[k]], lit == 1);
+        indices.push_back(at);
+      }
+    }
+  }
+
+  std::vector<LitVertex> vertices;
+  std::vector<std::uint32_t> indices;
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  [[nodiscard]] SunLitness LightOf(const Mesh& mesh, std::size_t first_index) const {
+    std::array<Eigen::Vector3f, 3> corners;
+    bool faces_sun = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vertex& v = mesh.vertices[mesh.indices[first_index + k]];
+      corners[k] = v.p_W_m;
+      faces_sun = faces_sun || lighting_.FromSun(v.normal_W.cast<double>()) > 0.0;
+    }
+    return faces_sun ? sunlit_.Of(corners) : SunLitness::kDark;
+  }
+
+  std::uint32_t Place(const Mesh& mesh, const Vertex& v, bool lit) {
+    const Eigen::Vector3d normal = v.normal_W.cast<double>();
+    const float albedo = mesh.albedo * v.shade;
+    vertices.push_back(
+        {v.p_W_m, v.uv,
+         albedo * Eigen::Vector2f(static_cast<float>(lighting_.FromSky(normal)),
+                                  lit ? static_cast<float>(lighting_.FromSun(normal)) : 0.0F)});
+    return static_cast<std::uint32_t>(vertices.size()) - 1;
+  }
+
+  const Lighting& lighting_;
+  const SunLitTriangles& sunlit_;
+};
+
+// Shells about the eye that are drawn one after the other.
+int ShellOf(double nearest_m) {
+  constexpr std::array kEnds_m = {4.0, 12.0, 30.0, 70.0};
+  return static_cast<int>(std::lower_bound(kEnds_m.begin(), kEnds_m.end(), nearest_m) -
+                          kEnds_m.begin());
 }
 
-// A vertex array with its two buffers bound and filled.
-template <typename V>
-GLuint Load(const GlFunctions& gl, const std::vector<V>& vertices,
-            const std::vector<std::uint32_t>& indices) {
-  GLuint array = 0;
-  GLuint buffers[2];
-  gl.GenVertexArrays(1, &array);
-  gl.GenBuffers(2, buffers);
-  gl.BindVertexArray(array);
-  gl.BindBuffer(GL_ARRAY_BUFFER, buffers[0]);
-  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(V)),
-                vertices.data(), GL_STATIC_DRAW);
-  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(),
-                GL_STATIC_DRAW);
-  return array;
-}
+}  // namespace
 
-// Centre and radius of a sphere about the mesh's bounding box.
-std::pair<Eigen::Vector3f, float> BoundingSphere(const Mesh& mesh) {
+BoundingSphere SphereAround(const Mesh& mesh) {
   Eigen::Vector3f low = mesh.vertices.front().p_W_m;
   Eigen::Vector3f high = low;
   for (const Vertex& v : mesh.vertices) {
@@ -52,86 +87,114 @@ std::pair<Eigen::Vector3f, float> BoundingSphere(const Mesh& mesh) {
   const Eigen::Vector3f center = 0.5F * (low + high);
   float radius = 0.0F;
   for (const Vertex& v : mesh.vertices) radius = std::max(radius, (v.p_W_m - center).norm());
-  return {center, radius};
-}
-
-}  // namespace
-
-GpuScene::GpuScene(const GlFunctions& gl, const Scene& scene, const Lighting& lighting) : gl_(gl) {
-  LoadTextures(scene.textures);
-  std::vector<LitVertex> vertices;
-  std::vector<std::uint32_t> indices;
-  for (const Mesh& mesh : scene.meshes) {
-    if (mesh.vertices.empty()) continue;
-    const auto [center, radius] = BoundingSphere(mesh);
-    ranges_.push_back({center.cast<double>(), radius, mesh.draw_distance_m,
-                       textures_.at(static_cast<std::size_t>(mesh.texture)),
-                       static_cast<GLsizei>(mesh.indices.size()), indices.size()});
-    const auto base = static_cast<std::uint32_t>(vertices.size());
-    for (const std::uint32_t index : mesh.indices) indices.push_back(base + index);
-    for (const Vertex& v : mesh.vertices) {
-      const auto light = static_cast<float>(lighting.OfWhite(v.normal_W.cast<double>()));
-      vertices.push_back({v.p_W_m, v.uv, light * mesh.albedo * v.shade});
-    }
-  }
-  vertices_ = Load(gl, vertices, indices);
-  Attribute(gl, 0, 3, sizeof(LitVertex), offsetof(LitVertex, p_W));
-  Attribute(gl, 1, 2, sizeof(LitVertex), offsetof(LitVertex, uv));
-  Attribute(gl, 2, 1, sizeof(LitVertex), offsetof(LitVertex, light));
+  return {center.cast<double>(), radius};
 }
 
 // Bilinear within the nearest mip level: a second level costs a fifth of the frame. Half a level
 // towards the sharper side: the road, seen at a grazing angle, would blur sideways otherwise.
-void GpuScene::LoadTextures(const std::vector<cv::Mat>& textures) {
+std::vector<GLuint> LoadTextures(const GlFunctions& gl, const std::vector<cv::Mat>& textures) {
   constexpr float kLevelBias = -0.5F;
-  textures_.resize(textures.size());
-  gl_.GenTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
-  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  std::vector<GLuint> ids(textures.size());
+  gl.GenTextures(static_cast<GLsizei>(ids.size()), ids.data());
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const cv::Mat& texels = textures[i];
     if (texels.type() != CV_8UC1 || !texels.isContinuous()) {
       throw std::logic_error("a texture is not a continuous CV_8UC1");
     }
-    gl_.BindTexture(GL_TEXTURE_2D, textures_[i]);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, texels.cols, texels.rows, 0, GL_RED, GL_UNSIGNED_BYTE,
-                   texels.data);
-    gl_.GenerateMipmap(GL_TEXTURE_2D);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl_.TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_LOD_BIAS, kLevelBias);
+    gl.BindTexture(GL_TEXTURE_2D, ids[i]);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, texels.cols, texels.rows, 0, GL_RED, GL_UNSIGNED_BYTE,
+                  texels.data);
+    gl.GenerateMipmap(GL_TEXTURE_2D);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl.TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_LOD_BIAS, kLevelBias);
   }
+  return ids;
 }
 
-void GpuScene::Draw(const nav::Pose& T_CW, const Frustum& frustum) {
+GpuScene::GpuScene(const GlFunctions& gl, const Scene& scene, const std::vector<GLuint>& textures,
+                   const Lighting& lighting, const SunLitTriangles& sunlit)
+    : gl_(gl) {
+  LitMeshes lit(lighting, sunlit);
+  for (const Mesh& mesh : scene.meshes) {
+    if (mesh.vertices.empty()) continue;
+    const std::size_t first = lit.indices.size();
+    lit.Append(mesh, false);
+    const std::size_t middle = lit.indices.size();
+    lit.Append(mesh, true);
+    const bool gets_sun =
+        std::any_of(lit.indices.begin() + static_cast<std::ptrdiff_t>(first), lit.indices.end(),
+                    [&](std::uint32_t i) { return lit.vertices[i].light.y() > 0.0F; });
+    ranges_.push_back({SphereAround(mesh),
+                       mesh.draw_distance_m,
+                       textures.at(static_cast<std::size_t>(mesh.texture)),
+                       gets_sun,
+                       {first, middle - first},
+                       {middle, lit.indices.size() - middle}});
+  }
+  array_ = LoadBuffers(gl, lit.vertices, lit.indices).array;
+  Attribute(gl, 0, 3, sizeof(LitVertex), offsetof(LitVertex, p_W));
+  Attribute(gl, 1, 2, sizeof(LitVertex), offsetof(LitVertex, uv));
+  Attribute(gl, 2, 2, sizeof(LitVertex), offsetof(LitVertex, light));
+}
+
+void GpuScene::Cull(const nav::Pose& T_CW, const Frustum& frustum) {
   visible_.clear();
   for (const Range& range : ranges_) {
-    const Eigen::Vector3d center_C = T_CW * range.center_W;
-    if (!frustum.MayShow(center_C, range.radius_m)) continue;
+    const Eigen::Vector3d center_C = T_CW * range.sphere.center;
+    if (!frustum.MayShow(center_C, range.sphere.radius_m)) continue;
     const double distance = center_C.norm();
-    if (distance - range.radius_m > range.draw_distance_m) continue;
-    visible_.emplace_back(distance, &range);
+    if (distance - range.sphere.radius_m > range.draw_distance_m) continue;
+    visible_.push_back({ShellOf(distance - range.sphere.radius_m), &range});
   }
-  std::sort(visible_.begin(), visible_.end());
-  gl_.BindVertexArray(vertices_);
-  for (const auto& [distance, range] : visible_) {
-    gl_.BindTexture(GL_TEXTURE_2D, range->texture);
-    gl_.DrawElements(GL_TRIANGLES, range->index_count, GL_UNSIGNED_INT,
-                     Offset(range->first_index * sizeof(std::uint32_t)));
+  std::sort(visible_.begin(), visible_.end(), [](const Visible& a, const Visible& b) {
+    if (a.shell != b.shell) return a.shell < b.shell;
+    if (a.range->texture != b.range->texture) return a.range->texture < b.range->texture;
+    return a.range < b.range;
+  });
+}
+
+// A call costs llvmpipe as much as some hundred triangles: one for all of a shell and a texture.
+void GpuScene::DrawBatch() {
+  gl_.BindVertexArray(array_);
+  for (std::size_t i = 0; i < batch_.size();) {
+    const Visible& first = batch_[i].visible;
+    counts_.clear();
+    offsets_.clear();
+    for (; i < batch_.size() && batch_[i].visible.shell == first.shell &&
+           batch_[i].visible.range->texture == first.range->texture;
+         ++i) {
+      counts_.push_back(static_cast<GLsizei>(batch_[i].indices.count));
+      offsets_.push_back(BufferOffset(batch_[i].indices.first * sizeof(std::uint32_t)));
+    }
+    gl_.BindTexture(GL_TEXTURE_2D, first.range->texture);
+    gl_.MultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
+                          static_cast<GLsizei>(counts_.size()));
   }
 }
 
 GpuTriangles::GpuTriangles(const GlFunctions& gl, const std::vector<Vertex>& vertices,
                            const std::vector<std::uint32_t>& indices)
-    : gl_(gl),
-      vertices_(Load(gl, vertices, indices)),
-      index_count_(static_cast<GLsizei>(indices.size())) {
+    : gl_(gl), index_count_(indices.size()) {
+  const GpuBuffers buffers = LoadBuffers(gl, vertices, indices);
+  array_ = buffers.array;
+  vertices_ = buffers.vertices;
   Attribute(gl, 0, 3, sizeof(Vertex), offsetof(Vertex, position));
   Attribute(gl, 1, 1, sizeof(Vertex), offsetof(Vertex, radiance));
 }
 
-void GpuTriangles::Draw() const {
-  gl_.BindVertexArray(vertices_);
-  gl_.DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, Offset(0));
+void GpuTriangles::Update(const std::vector<Vertex>& vertices) const {
+  gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_);
+  gl_.BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                    vertices.data());
+}
+
+void GpuTriangles::Draw() const { Draw(0, index_count_); }
+
+void GpuTriangles::Draw(std::size_t first_index, std::size_t count) const {
+  gl_.BindVertexArray(array_);
+  DrawIndexed(gl_, first_index, count);
 }
 
 }  // namespace polnav::sim

@@ -2,45 +2,97 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <utility>
+#include <algorithm>
 #include <vector>
 
 #include "nav/api/geometry.h"
 #include "sim/render/frustum.h"
 #include "sim/render/gl_context.h"
 #include "sim/render/lighting.h"
+#include "sim/render/shadow_map.h"
 #include "sim/world/scene.h"
 
 namespace polnav::sim {
 
-// Textured surfaces, lit when they are loaded: one vertex buffer, one draw call a mesh.
+struct BoundingSphere {
+  Eigen::Vector3d center;
+  double radius_m = 0.0;
+};
+// About the vertices' box.
+[[nodiscard]] BoundingSphere SphereAround(const Mesh& mesh);
+
+// One texture a scene's, mip-mapped.
+[[nodiscard]] std::vector<GLuint> LoadTextures(const GlFunctions& gl,
+                                               const std::vector<cv::Mat>& textures);
+
+// What stands still: textured surfaces, lit when they are loaded. Triangles that an edge of a
+// shadow crosses lie apart from those that are wholly lit or dark: only they need to ask the shadow
+// map.
 class GpuScene {
  public:
-  GpuScene(const GlFunctions& gl, const Scene& scene, const Lighting& lighting);
+  GpuScene(const GlFunctions& gl, const Scene& scene, const std::vector<GLuint>& textures,
+           const Lighting& lighting, const SunLitTriangles& sunlit);
 
-  // Draws what the frustum may show, nearest first: hidden pixels then cost little.
-  void Draw(const nav::Pose& T_CW, const Frustum& frustum);
+  // Picks what the frustum may show.
+  void Cull(const nav::Pose& T_CW, const Frustum& frustum);
+
+  // Is sunlight on any of what was picked where may_fall(sphere)?
+  template <typename MayFall>
+  [[nodiscard]] bool AnyInSun(const MayFall& may_fall) const {
+    return std::any_of(visible_.begin(), visible_.end(), [&](const Visible& v) {
+      return v.range->gets_sun && may_fall(v.range->sphere);
+    });
+  }
+
+  enum class Part { kPlain, kShadowEdge };
+  // Of what was picked, nearest shell first: hidden pixels then cost little. Only where
+  // wanted(sphere, gets_sun).
+  template <typename Wanted>
+  void Draw(Part part, const Wanted& wanted) {
+    batch_.clear();
+    for (const Visible& v : visible_) {
+      const Indices& indices = part == Part::kPlain ? v.range->plain : v.range->shadow_edge;
+      if (indices.count > 0 && wanted(v.range->sphere, v.range->gets_sun))
+        batch_.push_back({v, indices});
+    }
+    DrawBatch();
+  }
 
  private:
+  struct Indices {
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
   // Where one mesh lies in the buffers, and what it takes to leave it out.
   struct Range {
-    Eigen::Vector3d center_W;
-    double radius_m;
+    BoundingSphere sphere;
     float draw_distance_m;
     GLuint texture;
-    GLsizei index_count;
-    std::size_t first_index;
+    bool gets_sun;
+    Indices plain;
+    Indices shadow_edge;
   };
-  void LoadTextures(const std::vector<cv::Mat>& textures);
+  struct Visible {
+    int shell;
+    const Range* range;
+  };
+  struct Wanted {
+    Visible visible;
+    Indices indices;
+  };
+  void DrawBatch();
 
   const GlFunctions& gl_;
-  std::vector<GLuint> textures_;
   std::vector<Range> ranges_;
-  std::vector<std::pair<double, const Range*>> visible_;  // by distance
-  GLuint vertices_ = 0;
+  std::vector<Visible> visible_;  // by shell, in a shell by texture
+  // Reused.
+  std::vector<Wanted> batch_;
+  std::vector<GLsizei> counts_;
+  std::vector<const void*> offsets_;
+  GLuint array_ = 0;
 };
 
-// Untextured triangles: the sky's dome, or the mask over pixels nobody needs.
+// Untextured triangles: the sky's dome, the mask over pixels nobody needs, what casts shadows.
 class GpuTriangles {
  public:
   // Three position components and a radiance a vertex.
@@ -50,12 +102,15 @@ class GpuTriangles {
   };
   GpuTriangles(const GlFunctions& gl, const std::vector<Vertex>& vertices,
                const std::vector<std::uint32_t>& indices);
+  void Update(const std::vector<Vertex>& vertices) const;  // as many as before
   void Draw() const;
+  void Draw(std::size_t first_index, std::size_t count) const;
 
  private:
   const GlFunctions& gl_;
+  GLuint array_ = 0;
   GLuint vertices_ = 0;
-  GLsizei index_count_ = 0;
+  std::size_t index_count_ = 0;
 };
 
 }  // namespace polnav::sim

@@ -1,11 +1,9 @@
 #include "sim/render/lighting.h"
 
+#include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-
-#include "nav/api/geometry.h"
 
 namespace polnav::sim {
 namespace {
@@ -22,13 +20,6 @@ constexpr double kBrightestPatch = 6.0;
 
 double Radiance(const sky::SkyInstant& sky, const Eigen::Vector3d& direction_W) {
   return sky.Look(direction_W, Eigen::Vector3d::Zero()).radiance;
-}
-
-// Forward scattering by haze around the sun, and the disc itself; both mostly saturate.
-double Aureole(double angle_rad) {
-  const double angle_deg = nav::RadToDeg(angle_rad);
-  const double disc = angle_deg < 0.3 ? 60.0 : 0.0;
-  return disc + 5.0 * std::exp(-angle_deg / 1.2) + 0.8 * std::exp(-angle_deg / 9.0);
 }
 
 }  // namespace
@@ -54,43 +45,41 @@ Lighting::Lighting(const sky::WorldSky& sky) : sun_W_(sky.sun_W()) {
   ground_ = kGroundReflectance * (on_the_level + sun_ * std::max(0.0, sun_W_.z()));
 }
 
-double Lighting::OfWhite(const Eigen::Vector3d& normal_W) const {
-  double light = sun_ * std::max(0.0, normal_W.dot(sun_W_));
+double Lighting::FromSky(const Eigen::Vector3d& normal_W) const {
+  double light = 0.0;
   for (const SkyPatch& patch : patches_) {
     light += patch.weight * std::max(0.0, normal_W.dot(patch.direction_W));
   }
   return light + ground_ * 0.5 * (1.0 - normal_W.z());
 }
 
-SkyDome BuildSkyDome(const sky::WorldSky& sky) {
-  constexpr int kSectors = 24;
-  constexpr std::array kRings_deg = {0.001, 0.25,  0.32,  0.9,   2.0,   4.0,   7.0,
-                                     12.0,  18.0,  25.0,  33.0,  41.0,  49.0,  57.0,
-                                     65.0,  73.0,  81.0,  89.0,  97.0,  105.0, 113.0,
-                                     121.0, 130.0, 139.0, 148.0, 158.0, 168.0, 179.999};
-  const Eigen::Quaterniond q_WN =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sky.sun_W());
-  const sky::SkyInstant at_start = sky.At(0.0);
-  SkyDome dome;
-  for (const double ring_deg : kRings_deg) {
-    const double angle = nav::DegToRad(ring_deg);
-    for (int sector = 0; sector < kSectors; ++sector) {
-      const double around = 2.0 * pi * sector / kSectors;
-      const Eigen::Vector3d direction =
-          q_WN * Eigen::Vector3d(std::sin(angle) * std::cos(around),
-                                 std::sin(angle) * std::sin(around), std::cos(angle));
-      const double radiance = Radiance(at_start, direction) + Aureole(angle);
-      dome.vertices.push_back({direction.cast<float>(), static_cast<float>(radiance)});
-    }
+double Lighting::FromSun(const Eigen::Vector3d& normal_W) const {
+  return sun_ * std::max(0.0, normal_W.dot(sun_W_));
+}
+
+double Lighting::OfWhite(const Eigen::Vector3d& normal_W) const {
+  return FromSky(normal_W) + FromSun(normal_W);
+}
+
+std::array<float, 9> Lighting::SkyHarmonics() const {
+  constexpr int kNormals = 200;  // on a spiral, evenly over the sphere
+  Eigen::Matrix<double, kNormals, 9> basis;
+  Eigen::Matrix<double, kNormals, 1> light;
+  for (int i = 0; i < kNormals; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kNormals;
+    const double around = pi * (1.0 + std::sqrt(5.0)) * i;
+    const double r = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d n(r * std::cos(around), r * std::sin(around), z);
+    basis.row(i) << 1.0, n.x(), n.y(), n.z(), n.x() * n.y(), n.y() * n.z(), n.x() * n.z(),
+        n.x() * n.x() - n.y() * n.y(), 3.0 * n.z() * n.z() - 1.0;
+    light[i] = FromSky(n);
   }
-  for (std::uint32_t ring = 0; ring + 1 < kRings_deg.size(); ++ring) {
-    for (std::uint32_t sector = 0; sector < kSectors; ++sector) {
-      const std::uint32_t a = ring * kSectors + sector;
-      const std::uint32_t b = ring * kSectors + (sector + 1) % kSectors;
-      dome.indices.insert(dome.indices.end(), {a, b, a + kSectors, b, b + kSectors, a + kSectors});
-    }
+  const Eigen::Matrix<double, 9, 1> fit = basis.colPivHouseholderQr().solve(light);
+  std::array<float, 9> coefficients{};
+  for (std::size_t k = 0; k < 9; ++k) {
+    coefficients[k] = static_cast<float>(fit[static_cast<Eigen::Index>(k)]);
   }
-  return dome;
+  return coefficients;
 }
 
 }  // namespace polnav::sim

@@ -1,12 +1,13 @@
-// How bright is a white wall under this sky, and how bright is the sky itself?
+// How bright is a white wall under this sky, in the sun and in the shade?
 //
 // Radiance relative to the clear zenith, as in sky/skylight.h. A facet gets the sun by Lambert's
-// law, the sky as the integral over the half space before it, and light from the ground. Nothing
-// casts a shadow, and the sky is the one at the scenario's start: clouds in the pictures stand
-// still, which no estimator here looks at.
+// law, the sky as the integral over the half space before it, and light from the ground. Sun and
+// skylight are those of the scenario's start; what clouds and things keep of the sun is the
+// renderer's affair.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "sky/skylight.h"
@@ -17,8 +18,19 @@ class Lighting {
  public:
   explicit Lighting(const sky::WorldSky& sky);
 
-  // Radiance of a white Lambertian facet.
+  // Radiance of a white Lambertian facet, by origin of the light: from sky and ground; from the sun
+  // where nothing is in its way.
+  [[nodiscard]] double FromSky(const Eigen::Vector3d& normal_W) const;
+  [[nodiscard]] double FromSun(const Eigen::Vector3d& normal_W) const;
+  // Both.
   [[nodiscard]] double OfWhite(const Eigen::Vector3d& normal_W) const;
+
+  // FromSky's best fit in 1, x, y, z, xy, yz, xz, x^2 - y^2, 3 z^2 - 1 of the normal, for what
+  // turns; within 3 % of the brightest [Ramamoorthi2001].
+  [[nodiscard]] std::array<float, 9> SkyHarmonics() const;
+
+  [[nodiscard]] const Eigen::Vector3d& sun_W() const { return sun_W_; }
+  [[nodiscard]] double sun() const { return sun_; }
 
  private:
   struct SkyPatch {
@@ -30,16 +42,5 @@ class Lighting {
   double ground_ = 0.0;  // radiance of the ground that walls face
   std::vector<SkyPatch> patches_;
 };
-
-// A polar net about the sun: rings close together where the aureole is steep.
-struct SkyDome {
-  struct Vertex {
-    Eigen::Vector3f direction_W;
-    float radiance;
-  };
-  std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;
-};
-[[nodiscard]] SkyDome BuildSkyDome(const sky::WorldSky& sky);
 
 }  // namespace polnav::sim

@@ -1,23 +1,31 @@
 #include "sim/render/renderer.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sim/render/frustum.h"
 #include "sim/render/gl_context.h"
+#include "sim/render/gpu_actors.h"
 #include "sim/render/gpu_scene.h"
 #include "sim/render/lighting.h"
 #include "sim/render/shaders.h"
+#include "sim/render/shadows.h"
+#include "sim/render/sky_dome.h"
+#include "sim/render/surface_programs.h"
 
 namespace polnav::sim {
 namespace {
 
-GpuTriangles LoadSky(const GlFunctions& gl, const sky::WorldSky& sky) {
-  const SkyDome dome = BuildSkyDome(sky);
+constexpr double kKoschmieder = 3.912;  // -ln 0.02 [Koschmieder1924]
+constexpr double kFogThickness_m = 50.0;
+constexpr double kFogAsymmetry = 0.85;  // of a droplet's scattering: mostly forward
+
+std::vector<GpuTriangles::Vertex> VerticesOf(const SkyDome& dome) {
   std::vector<GpuTriangles::Vertex> vertices;
   for (const SkyDome::Vertex& v : dome.vertices) vertices.push_back({v.direction_W, v.radiance});
-  return {gl, vertices, dome.indices};
+  return vertices;
 }
 
 // At the near plane, so that nothing behind is shaded.
@@ -34,67 +42,74 @@ GpuTriangles LoadMask(const GlFunctions& gl, const std::vector<Eigen::Vector2d>&
   return {gl, vertices, indices};
 }
 
+StandingLight StandingLightOf(const Lighting& lighting) {
+  return {.sun_W = lighting.sun_W().cast<float>(),
+          .sun = static_cast<float>(lighting.sun()),
+          .harmonics = lighting.SkyHarmonics()};
+}
+
 }  // namespace
 
 struct Renderer::Impl {
   Impl(const Scene& scene, const sky::WorldSky& sky, const PinholeView& pinhole_view,
        const std::vector<Eigen::Vector2d>& unneeded_px);
 
-  struct Program {
-    GLuint id = 0;
-    GLint clip_from_W = -1;
-    GLint exposure = -1;
-  };
-  [[nodiscard]] Program Link(const char* vertex, const char* fragment) const;
-  void Use(const Program& program, const Eigen::Matrix4f& clip_from_W, double exposure) const;
-  void MakeFramebuffer() const;
+  void MakeFramebuffer();
+  void MoveClouds(nav::TimeNs stamp);
+  [[nodiscard]] PictureLight LightOf(const RenderRequest& request, const nav::Pose& T_CW) const;
+  void DrawMask();
+  void DrawSurfaces(const PictureLight& light, const SurfaceNeeds& needs);
+  void DrawActors(const std::vector<GpuActors::Placed>& placed, const nav::Pose& T_CW,
+                  const PictureLight& light, SurfaceNeeds needs);
+  void DrawSky(const nav::Pose& T_CW, const PictureLight& light);
 
   GlContext context;
   const GlFunctions& gl;
+  sky::WorldSky sky;
   PinholeView view;
   Frustum frustum;
-  Program surface_program;
-  Program sky_program;
-  Program mask_program;
+  Lighting lighting;
+  SkyDome dome;
+  nav::TimeNs dome_second = 0;
+  SurfacePrograms programs;
+  GLuint sky_program;
+  GLuint mask_program;
+  std::vector<GLuint> textures;
+  Shadows shadows;
   GpuScene surfaces;
-  GpuTriangles dome;
+  GpuActors actors;
+  GpuTriangles gpu_dome;
   GpuTriangles mask;
+  GLuint framebuffer = 0;
 };
 
-Renderer::Impl::Impl(const Scene& scene, const sky::WorldSky& sky, const PinholeView& pinhole_view,
+Renderer::Impl::Impl(const Scene& scene, const sky::WorldSky& world_sky,
+                     const PinholeView& pinhole_view,
                      const std::vector<Eigen::Vector2d>& unneeded_px)
     : gl(context.gl()),
+      sky(world_sky),
       view(pinhole_view),
       frustum(pinhole_view),
-      surface_program(Link(kSurfaceVertexShader, kSurfaceFragmentShader)),
-      sky_program(Link(kSkyVertexShader, kPlainFragmentShader)),
-      mask_program(Link(kMaskVertexShader, kPlainFragmentShader)),
-      surfaces(gl, scene, Lighting(sky)),
-      dome(LoadSky(gl, sky)),
+      lighting(sky),
+      dome(BuildSkyDome(sky)),
+      programs(context, StandingLightOf(lighting)),
+      sky_program(context.LinkProgram(kSkyVertexShader, kPlainFragmentShader)),
+      mask_program(context.LinkProgram(kMaskVertexShader, kPlainFragmentShader)),
+      textures(LoadTextures(gl, scene.textures)),
+      shadows(context, scene, lighting.sun_W()),
+      surfaces(gl, scene, textures, lighting, SunLitTriangles(shadows.standing())),
+      actors(gl, scene.actors, textures),
+      gpu_dome(gl, VerticesOf(dome), dome.indices),
       mask(LoadMask(gl, unneeded_px, view)) {
   MakeFramebuffer();
   gl.CullFace(GL_BACK);
   gl.FrontFace(GL_CW);  // rows run down the image, which mirrors every triangle
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_LEQUAL);  // the dome is at the far plane, where Clear put the depth
-  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   if (gl.GetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot load the scene");
 }
 
-Renderer::Impl::Program Renderer::Impl::Link(const char* vertex, const char* fragment) const {
-  const GLuint id = context.LinkProgram(vertex, fragment);
-  return {id, gl.GetUniformLocation(id, "clip_from_W"), gl.GetUniformLocation(id, "exposure")};
-}
-
-void Renderer::Impl::Use(const Program& program, const Eigen::Matrix4f& clip_from_W,
-                         double exposure) const {
-  gl.UseProgram(program.id);
-  gl.UniformMatrix4fv(program.clip_from_W, 1, GL_FALSE, clip_from_W.data());
-  gl.Uniform1f(program.exposure, static_cast<float>(exposure));
-}
-
-void Renderer::Impl::MakeFramebuffer() const {
-  GLuint framebuffer = 0;
+void Renderer::Impl::MakeFramebuffer() {
   GLuint color_depth[2];
   gl.GenFramebuffers(1, &framebuffer);
   gl.GenRenderbuffers(2, color_depth);
@@ -109,7 +124,86 @@ void Renderer::Impl::MakeFramebuffer() const {
     throw std::runtime_error("OSMesa gives no frame buffer of " + std::to_string(view.width_px) +
                              " x " + std::to_string(view.height_px) + " pixels");
   }
-  gl.Viewport(0, 0, view.width_px, view.height_px);
+}
+
+// The sky of the second that the stamp lies in: the same in whatever order pictures are drawn.
+void Renderer::Impl::MoveClouds(nav::TimeNs stamp) {
+  const nav::TimeNs second = stamp / nav::kNsPerSecond;
+  if (second == dome_second) return;
+  dome_second = second;
+  UpdateRadiance(sky, static_cast<double>(second), dome);
+  gpu_dome.Update(VerticesOf(dome));
+}
+
+PictureLight Renderer::Impl::LightOf(const RenderRequest& request, const nav::Pose& T_CW) const {
+  Eigen::Matrix4d C_from_W = Eigen::Matrix4d::Identity();
+  C_from_W.topLeftCorner<3, 3>() = T_CW.q.toRotationMatrix();
+  C_from_W.topRightCorner<3, 1>() = T_CW.p;
+  const double sun_share =
+      lighting.sun() > 0.0
+          ? sky.Transmittance(lighting.sun_W(), request.T_WC.p, nav::ToSeconds(request.stamp))
+          : 1.0;
+  const double extinction_1_m = kKoschmieder / request.visibility_m;
+  // What falls on a fog from above, less what it throws back (two streams [Bohren1987]): inside,
+  // light comes from all sides alike.
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const double fallen = lighting.FromSky(up) + sun_share * lighting.FromSun(up);
+  const double thrown_back = 0.75 * (1.0 - kFogAsymmetry) * extinction_1_m * kFogThickness_m;
+  return {.clip_from_W = (ProjectionMatrix(view) * C_from_W).cast<float>(),
+          .sun_map_from_W = shadows.standing().map_from_W(),
+          .actor_map_from_W = shadows.moving().map_from_W(),
+          .eye_W = request.T_WC.p.cast<float>(),
+          .exposure = static_cast<float>(request.exposure),
+          .sun_share = static_cast<float>(sun_share),
+          .extinction_1_m = static_cast<float>(extinction_1_m),
+          .airlight = static_cast<float>(fallen / (1.0 + thrown_back))};
+}
+
+void Renderer::Impl::DrawMask() {
+  gl.Disable(GL_CULL_FACE);
+  gl.UseProgram(mask_program);
+  mask.Draw();
+  gl.Enable(GL_CULL_FACE);
+}
+
+void Renderer::Impl::DrawSurfaces(const PictureLight& light, const SurfaceNeeds& needs) {
+  for (const bool by_actors : {false, true}) {
+    if (by_actors && !needs.actor_shadow) continue;
+    const auto wanted = [&](const BoundingSphere& sphere, bool gets_sun) {
+      return (needs.actor_shadow && gets_sun && shadows.MayFallOn(sphere)) == by_actors;
+    };
+    programs.Use({.actor_shadow = by_actors, .fog = needs.fog}, light);
+    surfaces.Draw(GpuScene::Part::kPlain, wanted);
+    programs.Use({.sun_shadow = true, .actor_shadow = by_actors, .fog = needs.fog}, light);
+    surfaces.Draw(GpuScene::Part::kShadowEdge, wanted);
+  }
+}
+
+void Renderer::Impl::DrawActors(const std::vector<GpuActors::Placed>& placed, const nav::Pose& T_CW,
+                                const PictureLight& light, SurfaceNeeds needs) {
+  needs.actor = true;
+  needs.sun_shadow = true;
+  bool in_use = false;
+  for (const GpuActors::Placed& one : placed) {
+    if (!frustum.MayShow(T_CW * one.sphere.center, one.sphere.radius_m)) continue;
+    if (!in_use) programs.Use(needs, light);
+    in_use = true;
+    actors.Draw(one, programs);
+  }
+}
+
+void Renderer::Impl::DrawSky(const nav::Pose& T_CW, const PictureLight& light) {
+  const auto at = [&](const char* name) { return gl.GetUniformLocation(sky_program, name); };
+  gl.Disable(GL_CULL_FACE);
+  gl.UseProgram(sky_program);
+  gl.UniformMatrix4fv(at("clip_from_W"), 1, GL_FALSE, light.clip_from_W.data());
+  gl.Uniform1f(at("exposure"), light.exposure);
+  gl.Uniform1f(at("fog_depth"), light.extinction_1_m * static_cast<float>(kFogThickness_m));
+  gl.Uniform1f(at("airlight"), light.exposure * light.airlight);
+  for (const SkyDome::Patch& patch : dome.patches) {
+    if (!frustum.MayShowDirections(T_CW.q * patch.direction_W, patch.radius_rad)) continue;
+    gpu_dome.Draw(patch.first, patch.count);
+  }
 }
 
 Renderer::Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
@@ -118,27 +212,32 @@ Renderer::Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeVi
 
 Renderer::~Renderer() = default;
 
-void Renderer::Render(const nav::Pose& T_WC, double exposure, cv::Mat& image) {
+void Renderer::Render(const RenderRequest& request, cv::Mat& image) {
   Impl& r = *impl_;
   r.context.MakeCurrent();
-  const nav::Pose T_CW = T_WC.Inverse();
-  Eigen::Matrix4d C_from_W = Eigen::Matrix4d::Identity();
-  C_from_W.topLeftCorner<3, 3>() = T_CW.q.toRotationMatrix();
-  C_from_W.topRightCorner<3, 1>() = T_CW.p;
-  const Eigen::Matrix4f clip_from_W = (ProjectionMatrix(r.view) * C_from_W).cast<float>();
+  r.MoveClouds(request.stamp);
+  const std::vector<GpuActors::Placed> placed = r.actors.At(request.stamp);
+  const nav::Pose T_CW = request.T_WC.Inverse();
+  r.surfaces.Cull(T_CW, r.frustum);
+  r.shadows.Pick(placed, request.T_WC.p);
+  const bool by_actors = r.surfaces.AnyInSun(
+      [&](const BoundingSphere& sphere) { return r.shadows.MayFallOn(sphere); });
+  if (by_actors) r.shadows.DrawPicked(r.actors);
+  r.shadows.standing().Bind(kSunMapUnit);
+  r.shadows.moving().Bind(kActorMapUnit);
 
+  const PictureLight light = r.LightOf(request, T_CW);
+  const bool fog = light.extinction_1_m > 0.0F;
+  r.gl.BindFramebuffer(GL_FRAMEBUFFER, r.framebuffer);
+  r.gl.Viewport(0, 0, r.view.width_px, r.view.height_px);
   r.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  r.gl.Disable(GL_CULL_FACE);
-  r.gl.UseProgram(r.mask_program.id);
-  r.mask.Draw();
-  r.gl.Enable(GL_CULL_FACE);
-  r.Use(r.surface_program, clip_from_W, exposure);
-  r.surfaces.Draw(T_CW, r.frustum);
-  r.gl.Disable(GL_CULL_FACE);
-  r.Use(r.sky_program, clip_from_W, exposure);
-  r.dome.Draw();
+  r.DrawMask();
+  r.DrawActors(placed, T_CW, light, {.actor_shadow = by_actors, .fog = fog});
+  r.DrawSurfaces(light, {.actor_shadow = by_actors, .fog = fog});
+  r.DrawSky(T_CW, light);
 
   image.create(r.view.height_px, r.view.width_px, CV_8UC1);
+  r.gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   r.gl.PixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(image.step1()));
   r.gl.ReadPixels(0, 0, r.view.width_px, r.view.height_px, GL_RED, GL_UNSIGNED_BYTE, image.data);
 }

@@ -52,7 +52,11 @@ struct AutoExposure::Impl {
   double Shortfall(const FrameRequest& request, double with_exposure) {
     const double lit = with_exposure * request.conditions.light_share / vignetting.headroom();
     const nav::Pose T_WC = request.T_WB * camera.T_BC;
-    renderer.Render(T_WC, lit, pinhole);
+    renderer.Render({.T_WC = T_WC,
+                     .stamp = request.stamp,
+                     .exposure = lit,
+                     .visibility_m = request.conditions.visibility_m},
+                    pinhole);
     warp.Apply(pinhole, image);
     if (request.conditions.glare > 0.0 && sun_W.z() > 0.0) {
       const Eigen::Vector3d sun_C = T_WC.q.conjugate() * sun_W;

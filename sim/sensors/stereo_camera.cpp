@@ -67,7 +67,8 @@ struct StereoCamera::Impl {
     cv::Mat distorted;
     for (int quarter = 0; quarter < 4; ++quarter) {
       const nav::Pose T_WB{nav::LevelAttitude(0.5 * M_PI * quarter), Eigen::Vector3d::Zero()};
-      renderer.Render(T_WB * left.camera().T_BC, trial_exposure / left.vignetting().headroom(),
+      renderer.Render({.T_WC = T_WB * left.camera().T_BC,
+                       .exposure = trial_exposure / left.vignetting().headroom()},
                       pinhole);
       left.warp().Apply(pinhole, distorted);
       left.vignetting().Apply(distorted);
@@ -85,9 +86,12 @@ struct StereoCamera::Impl {
             .gain = std::max(1.0, set / exposure)};
   }
 
-  // visibility_m and the sub-frame's stamp wait for a renderer that has fog and moving things.
-  void Draw(const SubFrame& at, const StereoEye& eye, double drawn, double /*visibility_m*/) {
-    renderer.Render(at.T_WB * eye.camera().T_BC, drawn, pinhole);
+  void Draw(const SubFrame& at, const StereoEye& eye, double drawn, double visibility_m) {
+    renderer.Render({.T_WC = at.T_WB * eye.camera().T_BC,
+                     .stamp = at.stamp,
+                     .exposure = drawn,
+                     .visibility_m = visibility_m},
+                    pinhole);
   }
 
   // The mean over the exposure, behind the lens.

@@ -27,8 +27,8 @@ FaultOptions Fault(const std::string& sensor, double start_s, std::optional<doub
 std::vector<Measurement> Recording(int samples) {
   std::vector<Measurement> all;
   for (int k = 0; k < samples; ++k) {
-    all.push_back(ImuSample{.stamp = k * kStep, .accel_m_s2 = {1.0 * k, 0.0, 9.8}});
-    all.push_back(
+    all.emplace_back(ImuSample{.stamp = k * kStep, .accel_m_s2 = {1.0 * k, 0.0, 9.8}});
+    all.emplace_back(
         nav::PolarizationSample{.stamp = k * kStep, .channel = {0.3, 0.3, 0.3, 0.3, 0.3, 0.3}});
   }
   return all;

@@ -49,7 +49,7 @@ TEST(Renderer, ShowsAPointWhereThePinholeEquationSays) {
     AddSpot(T_WC, p_C, kView.fx_px, scene);
     Renderer renderer(scene, TestSky(), kView);
     cv::Mat image;
-    renderer.Render(T_WC, kExposure, image);
+    renderer.Render({.T_WC = T_WC, .exposure = kExposure}, image);
     const Vector2d expected = Pixel(p_C);
     EXPECT_LT((Centroid(image, expected) - expected).norm(), 0.05) << p_C.transpose();
   }
@@ -69,7 +69,7 @@ TEST(Renderer, LetsTheNearerSurfaceHideTheFartherInWhateverOrderTheyCome) {
       if (!wall_first) wall();
       Renderer renderer(scene, TestSky(), kView);
       cv::Mat image;
-      renderer.Render(T_WC, kExposure, image);
+      renderer.Render({.T_WC = T_WC, .exposure = kExposure}, image);
       const bool is_seen = image.at<std::uint8_t>(126, 190) > 50;
       EXPECT_EQ(is_seen, wall_z > 5.0);
     }
@@ -85,9 +85,9 @@ TEST(Renderer, DoublesTheGreyWithTheExposureUntilItSaturates) {
   cv::Mat once;
   cv::Mat twice;
   cv::Mat bright;
-  renderer.Render(T_WC, 0.05, once);
-  renderer.Render(T_WC, 0.10, twice);
-  renderer.Render(T_WC, 50.0, bright);
+  renderer.Render({.T_WC = T_WC, .exposure = 0.05}, once);
+  renderer.Render({.T_WC = T_WC, .exposure = 0.10}, twice);
+  renderer.Render({.T_WC = T_WC, .exposure = 50.0}, bright);
   const int grey = once.at<std::uint8_t>(126, 190);
   EXPECT_GT(grey, 5);
   EXPECT_NEAR(twice.at<std::uint8_t>(126, 190), 2 * grey, 1);  // each rounded to half a grey
@@ -99,9 +99,9 @@ TEST(Renderer, LeavesUnneededPixelsBlackAndTheOthersAsTheyWere) {
   const nav::Pose T_WC = TiltedCamera();
   cv::Mat whole;
   cv::Mat masked;
-  Renderer(empty, TestSky(), kView).Render(T_WC, kExposure, whole);
+  Renderer(empty, TestSky(), kView).Render({.T_WC = T_WC, .exposure = kExposure}, whole);
   const std::vector<Vector2d> corner = {{-0.5, -0.5}, {99.5, -0.5}, {-0.5, 99.5}};
-  Renderer(empty, TestSky(), kView, corner).Render(T_WC, kExposure, masked);
+  Renderer(empty, TestSky(), kView, corner).Render({.T_WC = T_WC, .exposure = kExposure}, masked);
   EXPECT_EQ(masked.at<std::uint8_t>(20, 20), 0);
   EXPECT_GT(whole.at<std::uint8_t>(20, 20), 0);
   const cv::Rect rest(100, 0, kView.width_px - 100, kView.height_px);
@@ -117,9 +117,15 @@ TEST(Renderer, GivesTheSameBytesInAnyThreadAndAgain) {
   const auto work = [&](std::size_t i) {
     Renderer renderer(scene, TestSky(), kView);
     cv::Mat other;
-    renderer.Render(T_WC, kExposure, first[i]);
-    for (int k = 0; k < 5; ++k) renderer.Render({T_WC.q, {0.1 * k, 0.0, 1.0}}, kExposure, other);
-    renderer.Render(T_WC, kExposure, again[i]);
+    renderer.Render({.T_WC = T_WC, .exposure = kExposure}, first[i]);
+    for (int k = 0; k < 5; ++k) {
+      renderer.Render({.T_WC = {T_WC.q, {0.1 * k, 0.0, 1.0}},
+                       .stamp = k * nav::kNsPerSecond,
+                       .exposure = kExposure,
+                       .visibility_m = 10.0 + k},
+                      other);
+    }
+    renderer.Render({.T_WC = T_WC, .exposure = kExposure}, again[i]);
   };
   std::thread a(work, 0);
   std::thread b(work, 1);
