@@ -22,17 +22,20 @@ class LitMeshes {
   LitMeshes(const Lighting& lighting, const SunLitTriangles& sunlit)
       : lighting_(lighting), sunlit_(sunlit) {}
 
-  // Appends those of the mesh whose light is, or is not, up to the shadow map.
-  void Append(const Mesh& mesh, bool shadow_edge) {
+  // Appends those of the mesh whose light is, or is not, up to the shadow map; sun_box grows by
+  // those that get sun, in the axes along it.
+  void Append(const Mesh& mesh, bool shadow_edge, const Eigen::Matrix3d& axes,
+              Eigen::AlignedBox3d& sun_box) {
     std::vector<std::array<std::uint32_t, 2>> placed(mesh.vertices.size(), {kNone, kNone});
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      const SunLitness light = LightOf(mesh, i);
-      if ((light == SunLitness::kMixed) != shadow_edge) continue;
-      const std::size_t lit = light == SunLitness::kDark ? 0 : 1;
-      for (std::size_t k = i; k < i + 3; ++k) {
-        std::uint32_t& at = placed[mesh.indices[k]][lit];
-        if (at == kNone) at = Place(mesh, mesh.vertices[mesh.indices[k]], lit == 1);
+      const std::array<bool, 3> lit = LightOf(mesh, i);
+      if (edge_ != shadow_edge) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex& v = mesh.vertices[mesh.indices[i + k]];
+        std::uint32_t& at = placed[mesh.indices[i + k]][lit[k] ? 1 : 0];
+        if (at == kNone) at = Place(mesh, v, lit[k]);
         indices.push_back(at);
+        if (lit[0] || lit[1] || lit[2]) sun_box.extend(axes * v.p_W_m.cast<double>());
       }
     }
   }
@@ -43,15 +46,27 @@ class LitMeshes {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
-  [[nodiscard]] SunLitness LightOf(const Mesh& mesh, std::size_t first_index) const {
-    std::array<Eigen::Vector3f, 3> corners;
+  // Corners in the sun; sets edge_, for a triangle that needs the shadow map. One so small that the
+  // map's own softness is no sharper is shaded from corner to corner.
+  [[nodiscard]] std::array<bool, 3> LightOf(const Mesh& mesh, std::size_t first_index) {
+    constexpr float kSmall_m = 0.8F;
+    std::array<Eigen::Vector3f, 3> p;
     bool faces_sun = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vertex& v = mesh.vertices[mesh.indices[first_index + k]];
-      corners[k] = v.p_W_m;
+      p[k] = v.p_W_m;
       faces_sun = faces_sun || lighting_.FromSun(v.normal_W.cast<double>()) > 0.0;
     }
-    return faces_sun ? sunlit_.Of(corners) : SunLitness::kDark;
+    edge_ = false;
+    if (!faces_sun) return {false, false, false};
+    const float longest_m =
+        std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+    if (longest_m < kSmall_m)
+      return {sunlit_.IsLit(p[0]), sunlit_.IsLit(p[1]), sunlit_.IsLit(p[2])};
+    const SunLitness light = sunlit_.Of(p);
+    edge_ = light == SunLitness::kMixed;
+    const bool lit = light != SunLitness::kDark;
+    return {lit, lit, lit};
   }
 
   std::uint32_t Place(const Mesh& mesh, const Vertex& v, bool lit) {
@@ -66,6 +81,7 @@ class LitMeshes {
 
   const Lighting& lighting_;
   const SunLitTriangles& sunlit_;
+  bool edge_ = false;
 };
 
 // Shells about the eye that are drawn one after the other.
@@ -116,20 +132,19 @@ std::vector<GLuint> LoadTextures(const GlFunctions& gl, const std::vector<cv::Ma
 GpuScene::GpuScene(const GlFunctions& gl, const Scene& scene, const std::vector<GLuint>& textures,
                    const Lighting& lighting, const SunLitTriangles& sunlit)
     : gl_(gl) {
+  const Eigen::Matrix3d axes = AxesAlongSun(lighting.sun_W());
   LitMeshes lit(lighting, sunlit);
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.vertices.empty()) continue;
     const std::size_t first = lit.indices.size();
-    lit.Append(mesh, false);
+    Eigen::AlignedBox3d sun_box;
+    lit.Append(mesh, false, axes, sun_box);
     const std::size_t middle = lit.indices.size();
-    lit.Append(mesh, true);
-    const bool gets_sun =
-        std::any_of(lit.indices.begin() + static_cast<std::ptrdiff_t>(first), lit.indices.end(),
-                    [&](std::uint32_t i) { return lit.vertices[i].light.y() > 0.0F; });
+    lit.Append(mesh, true, axes, sun_box);
     ranges_.push_back({SphereAround(mesh),
                        mesh.draw_distance_m,
                        textures.at(static_cast<std::size_t>(mesh.texture)),
-                       gets_sun,
+                       sun_box,
                        {first, middle - first},
                        {middle, lit.indices.size() - middle}});
   }

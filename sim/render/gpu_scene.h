@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <vector>
 
@@ -36,24 +37,23 @@ class GpuScene {
   // Picks what the frustum may show.
   void Cull(const nav::Pose& T_CW, const Frustum& frustum);
 
-  // Is sunlight on any of what was picked where may_fall(sphere)?
+  // Does may_fall(sun_box) hold for any of what was picked? A sun_box is about what gets sunlight,
+  // in the axes along it; empty where nothing does.
   template <typename MayFall>
-  [[nodiscard]] bool AnyInSun(const MayFall& may_fall) const {
-    return std::any_of(visible_.begin(), visible_.end(), [&](const Visible& v) {
-      return v.range->gets_sun && may_fall(v.range->sphere);
-    });
+  [[nodiscard]] bool Any(const MayFall& may_fall) const {
+    return std::any_of(visible_.begin(), visible_.end(),
+                       [&](const Visible& v) { return may_fall(v.range->sun_box); });
   }
 
   enum class Part { kPlain, kShadowEdge };
   // Of what was picked, nearest shell first: hidden pixels then cost little. Only where
-  // wanted(sphere, gets_sun).
+  // wanted(sun_box).
   template <typename Wanted>
   void Draw(Part part, const Wanted& wanted) {
     batch_.clear();
     for (const Visible& v : visible_) {
       const Indices& indices = part == Part::kPlain ? v.range->plain : v.range->shadow_edge;
-      if (indices.count > 0 && wanted(v.range->sphere, v.range->gets_sun))
-        batch_.push_back({v, indices});
+      if (indices.count > 0 && wanted(v.range->sun_box)) batch_.push_back({v, indices});
     }
     DrawBatch();
   }
@@ -68,7 +68,7 @@ class GpuScene {
     BoundingSphere sphere;
     float draw_distance_m;
     GLuint texture;
-    bool gets_sun;
+    Eigen::AlignedBox3d sun_box;
     Indices plain;
     Indices shadow_edge;
   };

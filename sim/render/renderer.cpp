@@ -169,8 +169,8 @@ void Renderer::Impl::DrawMask() {
 void Renderer::Impl::DrawSurfaces(const PictureLight& light, const SurfaceNeeds& needs) {
   for (const bool by_actors : {false, true}) {
     if (by_actors && !needs.actor_shadow) continue;
-    const auto wanted = [&](const BoundingSphere& sphere, bool gets_sun) {
-      return (needs.actor_shadow && gets_sun && shadows.MayFallOn(sphere)) == by_actors;
+    const auto wanted = [&](const Eigen::AlignedBox3d& sun_box) {
+      return (needs.actor_shadow && shadows.MayFallOn(sun_box)) == by_actors;
     };
     programs.Use({.actor_shadow = by_actors, .fog = needs.fog}, light);
     surfaces.Draw(GpuScene::Part::kPlain, wanted);
@@ -219,9 +219,9 @@ void Renderer::Render(const RenderRequest& request, cv::Mat& image) {
   const std::vector<GpuActors::Placed> placed = r.actors.At(request.stamp);
   const nav::Pose T_CW = request.T_WC.Inverse();
   r.surfaces.Cull(T_CW, r.frustum);
-  r.shadows.Pick(placed, request.T_WC.p);
-  const bool by_actors = r.surfaces.AnyInSun(
-      [&](const BoundingSphere& sphere) { return r.shadows.MayFallOn(sphere); });
+  r.shadows.Pick(placed, request.stamp, request.T_WC.p);
+  const bool by_actors =
+      r.surfaces.Any([&](const Eigen::AlignedBox3d& box) { return r.shadows.MayFallOn(box); });
   if (by_actors) r.shadows.DrawPicked(r.actors);
   r.shadows.standing().Bind(kSunMapUnit);
   r.shadows.moving().Bind(kActorMapUnit);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -101,7 +100,7 @@ SunLitTriangles::SunLitTriangles(const ShadowMap& map)
       depths_(map.ReadDepths()) {}
 
 // In the four texels that the filter looks at.
-SunLitness SunLitTriangles::At(const Eigen::Vector3f& map_point) const {
+int SunLitTriangles::LitTexels(const Eigen::Vector3f& map_point) const {
   const float x = map_point.x() * static_cast<float>(width_px_) - 0.5F;
   const float y = map_point.y() * static_cast<float>(height_px_) - 0.5F;
   int lit = 0;
@@ -115,7 +114,11 @@ SunLitness SunLitTriangles::At(const Eigen::Vector3f& map_point) const {
       lit += std::min(map_point.z(), 1.0F) <= depth ? 1 : 0;
     }
   }
-  return lit == 4 ? SunLitness::kLit : lit == 0 ? SunLitness::kDark : SunLitness::kMixed;
+  return lit;
+}
+
+bool SunLitTriangles::IsLit(const Eigen::Vector3f& p_W) const {
+  return LitTexels((map_from_W_ * p_W.homogeneous()).head<3>()) >= 2;
 }
 
 // At points a texel or two apart; a triangle that would take too many is left to the renderer.
@@ -132,17 +135,16 @@ SunLitness SunLitTriangles::Of(const std::array<Eigen::Vector3f, 3>& corners_W) 
   }
   const int steps = 1 + static_cast<int>(longest_px / kSpacing_px);
   if (steps > kMostSteps) return SunLitness::kMixed;
-  std::optional<SunLitness> all;
+  const int all = LitTexels(p[0]);
   for (int i = 0; i <= steps; ++i) {
     for (int k = 0; k <= steps - i; ++k) {
       const float a = static_cast<float>(i) / static_cast<float>(steps);
       const float b = static_cast<float>(k) / static_cast<float>(steps);
-      const SunLitness here = At(p[0] + a * (p[1] - p[0]) + b * (p[2] - p[0]));
-      if (here == SunLitness::kMixed || (all && *all != here)) return SunLitness::kMixed;
-      all = here;
+      const int here = LitTexels(p[0] + a * (p[1] - p[0]) + b * (p[2] - p[0]));
+      if (here != all || here % 4 != 0) return SunLitness::kMixed;
     }
   }
-  return *all;
+  return all == 4 ? SunLitness::kLit : SunLitness::kDark;
 }
 
 }  // namespace polnav::sim

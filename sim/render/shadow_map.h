@@ -52,9 +52,10 @@ class SunLitTriangles {
  public:
   explicit SunLitTriangles(const ShadowMap& map);
   [[nodiscard]] SunLitness Of(const std::array<Eigen::Vector3f, 3>& corners_W) const;
+  [[nodiscard]] bool IsLit(const Eigen::Vector3f& p_W) const;  // the most of it
 
  private:
-  [[nodiscard]] SunLitness At(const Eigen::Vector3f& map_point) const;
+  [[nodiscard]] int LitTexels(const Eigen::Vector3f& map_point) const;  // of four
 
   Eigen::Matrix4f map_from_W_;
   int width_px_;

@@ -13,6 +13,7 @@ constexpr double kTexel_m = 0.05;
 constexpr int kLargest_px = 4096;
 // The moving map reaches so far from the eye.
 constexpr double kReach_m = 45.0;
+constexpr double kEyeCell_m = 4.0;  // within which the eye may be
 constexpr int kMovingWidth_px = 1024;
 constexpr int kMovingHeight_px = 512;
 
@@ -67,8 +68,13 @@ void Shadows::DrawStanding(const Scene& scene) {
   standing_.EndDrawing();
 }
 
-void Shadows::Pick(const std::vector<GpuActors::Placed>& placed, const Eigen::Vector3d& eye_W) {
-  const Eigen::Vector3d eye = moving_.axes() * eye_W;
+void Shadows::Pick(const std::vector<GpuActors::Placed>& placed, nav::TimeNs stamp,
+                   const Eigen::Vector3d& eye_W) {
+  const Eigen::Vector3d cell_W = kEyeCell_m * (eye_W / kEyeCell_m).array().floor();
+  if (picked_at_ == std::pair(stamp, cell_W)) return;
+  picked_at_ = {stamp, cell_W};
+  drawn_ = false;
+  const Eigen::Vector3d eye = moving_.axes() * cell_W;
   picked_.clear();
   casters_.clear();
   for (const GpuActors::Placed& one : placed) {
@@ -80,6 +86,8 @@ void Shadows::Pick(const std::vector<GpuActors::Placed>& placed, const Eigen::Ve
 }
 
 void Shadows::DrawPicked(const GpuActors& actors) {
+  if (drawn_) return;
+  drawn_ = true;
   const GlFunctions& gl = context_.gl();
   Eigen::AlignedBox3d box;
   for (const BoundingSphere& sphere : casters_) {
@@ -93,13 +101,13 @@ void Shadows::DrawPicked(const GpuActors& actors) {
   moving_.EndDrawing();
 }
 
-bool Shadows::MayFallOn(const BoundingSphere& sphere) const {
-  if (casters_.empty()) return false;
-  const Eigen::Vector3d center = moving_.axes() * sphere.center;
+bool Shadows::MayFallOn(const Eigen::AlignedBox3d& box) const {
+  if (box.isEmpty()) return false;
   return std::any_of(casters_.begin(), casters_.end(), [&](const BoundingSphere& caster) {
-    const Eigen::Vector3d apart = caster.center - center;
-    const double reach = caster.radius_m + sphere.radius_m;
-    return apart.head<2>().norm() < reach && apart.z() > -reach;
+    const Eigen::Vector2d nearest =
+        caster.center.head<2>().cwiseMax(box.min().head<2>()).cwiseMin(box.max().head<2>());
+    return (caster.center.head<2>() - nearest).norm() < caster.radius_m &&
+           caster.center.z() + caster.radius_m > box.min().z();
   });
 }
 

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "sim/render/gl_context.h"
@@ -21,11 +23,12 @@ class Shadows {
   [[nodiscard]] const ShadowMap& standing() const { return standing_; }
   [[nodiscard]] const ShadowMap& moving() const { return moving_; }
 
-  // Picks those of them whose shadows may be seen from near the eye.
-  void Pick(const std::vector<GpuActors::Placed>& placed, const Eigen::Vector3d& eye_W);
-  // May the shadow of any of those fall on something within the sphere?
-  [[nodiscard]] bool MayFallOn(const BoundingSphere& sphere) const;
-  // Draws the moving map of those. Depends on nothing drawn before.
+  // Picks those of them whose shadows may be seen from near the eye; the same for both of a pair.
+  void Pick(const std::vector<GpuActors::Placed>& placed, nav::TimeNs stamp,
+            const Eigen::Vector3d& eye_W);
+  // May the shadow of any of those fall on something in the box, in the axes along the sun?
+  [[nodiscard]] bool MayFallOn(const Eigen::AlignedBox3d& box) const;
+  // Draws the moving map of those, unless it shows just them. Depends on nothing else drawn before.
   void DrawPicked(const GpuActors& actors);
 
  private:
@@ -37,6 +40,8 @@ class Shadows {
   GLint W_from_A_;
   ShadowMap standing_;
   ShadowMap moving_;
+  std::optional<std::pair<nav::TimeNs, Eigen::Vector3d>> picked_at_;
+  bool drawn_ = false;  // the moving map, of those picked
   std::vector<GpuActors::Placed> picked_;
   std::vector<BoundingSphere> casters_;  // the same, in the axes along the sun
 };

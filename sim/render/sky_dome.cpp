@@ -17,8 +17,8 @@ constexpr std::uint32_t kSectors = 72;
 // From the sun; a step of 4.5 degrees resolves a cumulus of 600 m at 1500 m down to 20 degrees.
 constexpr std::array kNear_deg = {0.001, 0.25, 0.32, 0.9, 2.0, 4.0, 7.0, 11.0};
 constexpr double kStep_deg = 4.5;
-constexpr std::uint32_t kPatchSectors = 6;
-constexpr std::uint32_t kPatchRings = 6;
+constexpr std::uint32_t kPatchSectors = 12;
+constexpr std::uint32_t kPatchRings = 8;
 
 // Forward scattering by haze around the sun, and the disc itself; both mostly saturate.
 double Aureole(double angle_rad) {
