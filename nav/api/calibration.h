@@ -41,6 +41,12 @@ struct PolarimeterCalibration {
   double fov_rad = 0.0;  // full cone
 };
 
+// Errors of an imaging polarimeter in this order: gains, relative (4); dark readings over full
+// scale (4); polarizers [rad] (4); rotation vector of T_BS, in B [rad] (3); focal length, relative
+// (1); optical axis on the sensor [px] (2).
+inline constexpr int kInstrumentErrors = 18;
+using InstrumentCovariance = Eigen::Matrix<double, kInstrumentErrors, kInstrumentErrors>;
+
 // An imaging polarimeter: four polarizers over every 2x2 cell of pixels. S as in nav/api/lens.h.
 // The four are counted row by row from the top left pixel.
 struct PolarizationCameraCalibration {
@@ -59,8 +65,22 @@ struct PolarizationCameraCalibration {
   double offset_sigma = 0.0;  // of each dark reading, over full scale [-]
   double polarizer_sigma_rad = 0.0;
   double mount_sigma_rad = 0.0;  // of T_BS, about each axis
+  double focal_sigma = 0.0;      // of the focal length, relative [-]
   double center_sigma_px = 0.0;  // of where the optical axis meets the sensor, along each side
+  // All of these together, where it is known: it then stands for the sigmas, since a calibration
+  // errs in combinations that it cannot tell apart.
+  std::optional<InstrumentCovariance> covariance;
 };
+
+[[nodiscard]] inline InstrumentCovariance CovarianceOf(const PolarizationCameraCalibration& c) {
+  if (c.covariance) return *c.covariance;
+  Eigen::Matrix<double, kInstrumentErrors, 1> sigma;
+  sigma << Eigen::Vector4d::Constant(c.gain_sigma), Eigen::Vector4d::Constant(c.offset_sigma),
+      Eigen::Vector4d::Constant(c.polarizer_sigma_rad),
+      Eigen::Vector3d::Constant(c.mount_sigma_rad), c.focal_sigma,
+      Eigen::Vector2d::Constant(c.center_sigma_px);
+  return sigma.cwiseAbs2().asDiagonal();
+}
 
 // One sigma of a kind, as a data sheet has it; each axis by itself.
 struct ImuCalibration {

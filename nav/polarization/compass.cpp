@@ -17,19 +17,6 @@ constexpr double kMeanOfLeastDop = 0.5;  // of min_dop: the least mean by weight
 constexpr double kPaperLeastDop = 0.02;
 constexpr double kHalfTurnWithin_rad = 0.6;  // of half a turn: the rival is the same meridian's
 
-InstrumentSpread SpreadOf(const CompassOptions& options,
-                          const PolarizationCameraCalibration& calibration) {
-  const double center = calibration.center_sigma_px / calibration.lens.focal_px;
-  const double handed_in = DegToRad(options.tilt_sigma_deg);
-  return {// Q and U are half differences of two channels.
-          .stokes = calibration.gain_sigma / std::numbers::sqrt2,
-          .dark = calibration.offset_sigma / std::numbers::sqrt2,
-          // The polarizers' mean turns all, their differences shear Q against U.
-          .turn_rad = std::hypot(calibration.mount_sigma_rad,
-                                 calibration.polarizer_sigma_rad / std::numbers::sqrt2),
-          .tilt_rad = std::hypot(std::hypot(calibration.mount_sigma_rad, center), handed_in)};
-}
-
 StokesFit FromPaper(const PaperFit& paper, const SkyBlocks& sky) {
   StokesFit fit{.angle_rad = paper.angle_rad, .sigma_rad = paper.sigma_rad, .agreement = 1.0};
   int used = 0;
@@ -46,17 +33,15 @@ StokesFit FromPaper(const PaperFit& paper, const SkyBlocks& sky) {
   return fit;
 }
 
-std::optional<StokesFit> Solve(const CompassOptions& options,
-                               const PolarizationCameraCalibration& calibration,
+std::optional<StokesFit> Solve(const CompassOptions& options, const InstrumentErrors& instrument,
                                const BlockView& view, const SkyBlocks& sky,
                                std::optional<double> elevation_rad) {
-  const InstrumentSpread spread = SpreadOf(options, calibration);
   std::optional<PaperFit> paper;
   if (options.method == "stokes") {
     if (elevation_rad) {
-      return FitStokes(options, sky, view.tiles(), *elevation_rad, spread);
+      return FitStokes(options, sky, view.tiles(), *elevation_rad, instrument);
     }
-    const auto meridian = FitMeridian(options, sky, view.tiles(), spread);
+    const auto meridian = FitMeridian(options, sky, view.tiles(), instrument);
     return meridian ? std::optional(meridian->fit) : std::nullopt;
   }
   if (options.method == "lsq") paper = FitLeastSquares(sky, elevation_rad);
@@ -141,10 +126,10 @@ std::string StatusText(const CompassReading& reading) {
 
 Compass::Compass(const CompassOptions& options, const PolarizationCameraCalibration& calibration)
     : options_(options),
-      calibration_(calibration),
       reader_(calibration, BlockSizeFor(calibration.width_px, calibration.height_px),
               options.saturation),
-      view_(options, calibration, reader_) {
+      view_(options, calibration, reader_),
+      instrument_(ErrorsOf(calibration, reader_, DegToRad(options.tilt_sigma_deg))) {
   if (options.method != "zenith" && options.method != "lsq" && options.method != "ransac_tls" &&
       options.method != "stokes") {
     throw std::invalid_argument("compass method '" + options.method +
@@ -178,7 +163,7 @@ CompassReading Compass::Read(const cv::Mat& mosaic, const std::optional<Eigen::V
   if (static_cast<double>(sky.size()) <= std::max(8.0, options_.min_used_fraction * sky.in_view)) {
     return none(WhyTooFew(sky));
   }
-  const std::optional<StokesFit> fit = Solve(options_, calibration_, view_, sky, elevation_rad);
+  const std::optional<StokesFit> fit = Solve(options_, instrument_, view_, sky, elevation_rad);
   if (!fit) return none(NoHeading::kNoSky);
   if (trace != nullptr) {
     for (std::size_t i = 0; i < sky.index.size(); ++i) {

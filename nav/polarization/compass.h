@@ -18,6 +18,7 @@
 
 #include "nav/api/calibration.h"
 #include "nav/polarization/compass_options.h"
+#include "nav/polarization/instrument_errors.h"
 #include "nav/polarization/sky_blocks.h"
 #include "nav/polarization/stokes_blocks.h"
 
@@ -76,9 +77,9 @@ class Compass {
 
  private:
   CompassOptions options_;
-  PolarizationCameraCalibration calibration_;
   BlockReader reader_;
   BlockView view_;
+  InstrumentErrors instrument_;
 };
 
 }  // namespace polnav::nav

@@ -9,7 +9,6 @@ struct CompassOptions {
   // zenith: the middle of the picture as one reading; lsq: all pixels alike; ransac_tls: pixels
   // that agree [Fan2020]; stokes: Stokes parameters weighted by what they are worth.
   // Not a key: a scenario names a compass by its method.
-  // Not a key: a scenario names a compass by its method.
   std::string method = "stokes";
   double min_elevation_deg = 10.0;    // rays below see haze, houses and trees
   double radius_px = 0.0;             // of the disc about the optical axis that is used; 0: all
@@ -24,10 +23,9 @@ struct CompassOptions {
   // common, and what its blocks have beside that.
   double patch_light_dop = 0.10;
   double lost_light_dop = 0.04;
-  // What the sigma makes of it: polarization that a patch of clear sky has beside the pattern, and
-  // that clouds add to it, times the share of the sky that they hide. Fitted, see docs/compass.md.
-  double pattern_sigma = 0.0007;
-  double gap_light_dop = 0.0075;
+  // What the sigma makes of it: polarization that clouds add to the clear sky between them, times
+  // the share of the sky that they hide. Fitted, see docs/compass.md.
+  double gap_light_dop = 0.0048;
   double correlation_deg = 20.0;    // size of a patch; larger: a larger sigma, half turns less sure
   double tilt_sigma_deg = 0.0;      // of the roll and pitch that are handed in
   double half_turn_evidence = 8.0;  // log-likelihood between two headings, for one to be chosen
@@ -50,7 +48,6 @@ struct CompassOptions {
     v("clear_sigma", clear_sigma, {.min = 0.0, .max = 1.0});
     v("patch_light_dop", patch_light_dop, {.min = 0.001, .max = 1.0});
     v("lost_light_dop", lost_light_dop, {.min = 0.0, .max = 1.0});
-    v("pattern_sigma", pattern_sigma, {.min = 0.0, .max = 1.0});
     v("gap_light_dop", gap_light_dop, {.min = 0.0, .max = 1.0});
     v("correlation_deg", correlation_deg, {.min = 0.1, .max = 180.0});
     v("tilt_sigma_deg", tilt_sigma_deg, {.min = 0.0, .max = 45.0});

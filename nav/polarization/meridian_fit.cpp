@@ -33,7 +33,7 @@ Eigen::Vector3d MostAcross(const SkyBlocks& sky) {
 }  // namespace
 
 std::optional<MeridianFit> FitMeridian(const CompassOptions& options, const SkyBlocks& sky,
-                                       const Tiles& tiles, const InstrumentSpread& spread) {
+                                       const Tiles& tiles, const InstrumentErrors& instrument) {
   if (sky.size() < kFewest) return std::nullopt;
   Eigen::Vector3d sun = MostAcross(sky);
   if (sun.z() < 0.0) sun = -sun;
@@ -45,9 +45,10 @@ std::optional<MeridianFit> FitMeridian(const CompassOptions& options, const SkyB
   double center = middle;
   for (int round = 0; round < 4; ++round) {
     for (int k = -3; k <= 3; ++k) {
+      if (round > 0 && k % 3 == 0) continue;  // the round before was there
       const double elevation = center + reach * k / 3.0;
       if (elevation < 0.0 || elevation > 0.5 * std::numbers::pi - kLowest_rad) continue;
-      const StokesFit fit = FitStokes(options, sky, tiles, elevation, spread);
+      const StokesFit fit = FitStokes(options, sky, tiles, elevation, instrument);
       if (fit.cost < best) {
         best = fit.cost;
         result = {.fit = fit, .elevation_rad = elevation};

@@ -21,6 +21,6 @@ struct MeridianFit {
 
 [[nodiscard]] std::optional<MeridianFit> FitMeridian(const CompassOptions& options,
                                                      const SkyBlocks& sky, const Tiles& tiles,
-                                                     const InstrumentSpread& spread);
+                                                     const InstrumentErrors& instrument);
 
 }  // namespace polnav::nav

@@ -51,15 +51,20 @@ Eigen::ArrayXf RayleighPattern::VerticalAcross(const Values& values) const {
   return 2.0F * vx * vy * values.mx - (vx.square() - vy.square()) * values.my;
 }
 
-Eigen::ArrayXf RayleighPattern::TurnAbout(const Eigen::Vector3d& axis_L, double angle_rad) const {
-  const Eigen::Vector3d sun(cosine_ * std::cos(angle_rad), cosine_ * std::sin(angle_rad), sine_);
-  const Eigen::Vector3f moved = axis_L.cross(sun).cast<float>();
-  const Eigen::Vector3f sun_L = sun.cast<float>();
-  const Eigen::ArrayXf sx = (sky_->x.matrix() * sun_L).array();
-  const Eigen::ArrayXf sy = (sky_->y.matrix() * sun_L).array();
-  const Eigen::ArrayXf dx = (sky_->x.matrix() * moved).array();
-  const Eigen::ArrayXf dy = (sky_->y.matrix() * moved).array();
-  return 2.0F * (sx * dy - sy * dx) / (sx.square() + sy.square() + 1e-9F);
+// A turn w moves the sun by w x s, and s . (w x a) = w . (a x s).
+Array3Xf RayleighPattern::TurnBySun(double angle_rad) const {
+  const Eigen::Vector3f sun(cosine_ * static_cast<float>(std::cos(angle_rad)),
+                            cosine_ * static_cast<float>(std::sin(angle_rad)), sine_);
+  Array3Xf turn(sky_->size(), 3);
+  for (Eigen::Index i = 0; i < sky_->size(); ++i) {
+    const Eigen::Vector3f x = sky_->x.row(i).matrix();
+    const Eigen::Vector3f y = sky_->y.row(i).matrix();
+    const float sx = x.dot(sun);
+    const float sy = y.dot(sun);
+    const float scale = 2.0F / (sx * sx + sy * sy + 1e-9F);
+    turn.row(i) = scale * sun.cross(sx * y - sy * x).array().transpose();
+  }
+  return turn;
 }
 
 }  // namespace polnav::nav

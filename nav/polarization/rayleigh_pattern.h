@@ -31,8 +31,8 @@ class RayleighPattern {
   // residual.
   [[nodiscard]] Eigen::ArrayXf VerticalAcross(const Values& values) const;
 
-  // d(direction) / d(rotation of the sun about an axis of L), at an angle.
-  [[nodiscard]] Eigen::ArrayXf TurnAbout(const Eigen::Vector3d& axis_L, double angle_rad) const;
+  // d(direction) / d(rotation vector of the sun, in L), at an angle: a row a block.
+  [[nodiscard]] Array3Xf TurnBySun(double angle_rad) const;
 
  private:
   const SkyBlocks* sky_;

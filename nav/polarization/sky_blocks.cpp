@@ -58,6 +58,7 @@ Eigen::MatrixXd BlockView::Likeness(double correlation_rad) const {
 SkyBlocks BlockView::Select(const std::vector<StokesBlock>& blocks, const Tilt& tilt) const {
   SkyBlocks sky;
   const Eigen::Matrix3f R_LB = LevelFromBody(tilt).toRotationMatrix().cast<float>();
+  sky.R_LB = R_LB;
   const auto min_up = static_cast<float>(min_up_);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!in_disc_[i] || R_LB.row(2).dot(axes_B_[i].col(2)) < min_up) continue;

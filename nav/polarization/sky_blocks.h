@@ -27,7 +27,8 @@ struct SkyBlocks {
   Eigen::ArrayXf u;          // U / I
   Eigen::ArrayXf intensity;  // over full scale
   Eigen::ArrayXf variance;   // of q, and of u: pixels' noise and the channels' disagreement
-  std::vector<int> index;    // of the block in the picture
+  Eigen::Matrix3f R_LB = Eigen::Matrix3f::Identity();
+  std::vector<int> index;  // of the block in the picture
   std::vector<int> tile;
   int in_view = 0;    // blocks in the part of the picture that counts
   int saturated = 0;  // of those, the ones left out for too much light

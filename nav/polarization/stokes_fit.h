@@ -14,26 +14,17 @@
 //   the rest          variance = pixel noise + clear_sigma^2 + (lost_light_dop * share lost)^2
 // A clear sky's greatest polarization is read off the picture (an upper quantile). Iteratively
 // reweighted Gauss-Newton with Cauchy's loss, from the best angles of a coarse search.
-// The sigma has three parts: what patches of sky have in common, by what they can do to the angle;
-// the instrument's spread, each of its errors through its own sensitivity; tilt.
+// Its sigma: angle_sigma.h.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "nav/polarization/compass_options.h"
-#include "nav/polarization/rayleigh_pattern.h"
+#include "nav/polarization/instrument_errors.h"
 #include "nav/polarization/sky_blocks.h"
 
 namespace polnav::nav {
-
-// One sigma of what the calibration leaves; see PolarizationCameraCalibration.
-struct InstrumentSpread {
-  double stokes = 0.0;    // of a constant q or u in the sensor's axes
-  double dark = 0.0;      // of a constant Q or U over full scale: worst where the sky is dark
-  double turn_rad = 0.0;  // of the mounting about the vertical, polarizers included
-  double tilt_rad = 0.0;  // of the vertical about each level axis
-};
 
 struct StokesFit {
   double angle_rad = 0.0;  // a
@@ -52,6 +43,6 @@ struct StokesFit {
 // sky: not empty. sun_elevation_rad: neither horizon nor zenith need be avoided; sigma tells.
 [[nodiscard]] StokesFit FitStokes(const CompassOptions& options, const SkyBlocks& sky,
                                   const Tiles& tiles, double sun_elevation_rad,
-                                  const InstrumentSpread& spread);
+                                  const InstrumentErrors& instrument);
 
 }  // namespace polnav::nav

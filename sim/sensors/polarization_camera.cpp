@@ -45,6 +45,7 @@ nav::PolarizationCameraCalibration NominalPolarizationCamera(
           .offset_sigma = options.offset_sigma,
           .polarizer_sigma_rad = nav::DegToRad(options.polarizer_angle_sigma_deg),
           .mount_sigma_rad = nav::DegToRad(options.mount_error_sigma_deg),
+          .focal_sigma = options.focal_sigma,
           .center_sigma_px = options.center_sigma_px};
 }
 

@@ -7,7 +7,7 @@
 
 #include "nav/polarization/stokes_blocks.h"
 #include "nav/polarization/stokes_fit.h"
-#include "nav/polarization/turn_calibration.h"
+#include "nav/polarization/turn_residual.h"
 #include "sky/mosaic.h"
 
 namespace polnav::nav {
@@ -94,6 +94,7 @@ TEST(TurnResidual, VanishesForTheTrueInstrumentAndHeading) {
   residual.gain = Eigen::Vector4d::Ones();
   residual.offset = Eigen::Vector4d::Zero();
   residual.axes_B = Eigen::Matrix3d::Identity();
+  residual.turn_by_lens = Eigen::Matrix3d::Zero();
   residual.sun_azimuth_rad = 0.4;
   residual.sun_elevation_rad = 0.3;
   const double heading = 1.3;
@@ -106,13 +107,14 @@ TEST(TurnResidual, VanishesForTheTrueInstrumentAndHeading) {
   const Eigen::Vector4d error = gain - Eigen::Vector4d::Ones();
   Eigen::Matrix<double, 12, 1> instrument;
   instrument << error, Eigen::Vector4d::Zero(), turned;
-  const Eigen::Vector3d mount = Eigen::Vector3d::Zero();
+  const Eigen::Matrix<double, 6, 1> view = Eigen::Matrix<double, 6, 1>::Zero();
+  const double scattering = 0.0;
   Eigen::Vector2d value;
-  residual(instrument.data(), mount.data(), &heading, value.data());
+  residual(instrument.data(), view.data(), &scattering, &heading, value.data());
   EXPECT_LT(value.norm(), 1e-6);
   // 2 p per radian of heading, over its sigma.
   const double off = heading + 1e-4;
-  residual(instrument.data(), mount.data(), &off, value.data());
+  residual(instrument.data(), view.data(), &scattering, &off, value.data());
   EXPECT_NEAR(std::abs(value[1]), 2.0 * 0.5 * 1e-4 / residual.across_sigma, 1e-5);
 }
 

@@ -66,7 +66,7 @@ TEST(RayleighPattern, TurnAboutTheVerticalIsTheAnglesOwnDerivative) {
   const SkyBlocks sky = Rays();
   const RayleighPattern pattern(sky, kElevation_rad);
   const RayleighPattern::Values values = At(sky, -2.0);
-  const Eigen::ArrayXf turn = pattern.TurnAbout(Eigen::Vector3d::UnitZ(), -2.0);
+  const Eigen::ArrayXf turn = pattern.TurnBySun(-2.0).col(2);
   EXPECT_LT((turn - values.turn).abs().maxCoeff(), 1e-4F);
 }
 
