@@ -62,6 +62,24 @@ TEST(StereoEstimator, CoastsWithGrowingCovarianceAndComesBack) {
   EXPECT_TRUE(drive.last.tracked);
 }
 
+TEST(StereoEstimator, LeavesOutFramesThatAreLateOrCameBefore) {
+  Drive drive;
+  drive.Go(0, 40, 0.1);
+  const Estimate before = drive.last;
+  const auto see = [&](int k) {
+    return drive.street.See(drive.street.PoseAt(0.6 * k), k * kNsPerSecond / 10, 0.1);
+  };
+  for (const int k : {39, 35, 0}) {
+    const Report report = drive.estimator.Process(see(k));
+    EXPECT_EQ(report.outcome, Outcome::kUnusable) << k;
+    EXPECT_FALSE(report.estimate) << k;
+  }
+  drive.Go(40, 20, 0.1);
+  EXPECT_TRUE(drive.last.tracked);
+  EXPECT_GT(drive.last.stamp, before.stamp);
+  EXPECT_LT((drive.last.T_WB.p - drive.street.PoseAt(0.6 * 59).p).norm(), 0.4);
+}
+
 TEST(StereoEstimator, PointsThatMoveTogetherAreLeftOut) {
   Drive drive;
   drive.Go(0, 30, 0.05);

@@ -137,6 +137,19 @@ TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
   EXPECT_FALSE(fusion.TakeEdge(0, LevelAttitude(1.2)));
 }
 
+TEST(HeadingFusion, TakesNoReadingTwiceOrLate) {
+  HeadingFusion fusion({}, {}, [](TimeNs) { return Eigen::Vector3d::UnitX(); });
+  PolarizationSample sample = Channels(0.3, 0.5, 0.4);
+  sample.stamp = 10;
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUnusable);
+  (void)fusion.Advance(0, LevelAttitude(0.0), 20, LevelAttitude(0.0), 1.0);
+  sample.stamp = 15;
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUnusable);
+  sample.stamp = 25;
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
+}
+
 TEST(HeadingFusion, UnpolarizedLightIsUnusable) {
   HeadingFusion fusion({}, {}, [](TimeNs) { return Eigen::Vector3d::UnitX(); });
   EXPECT_EQ(fusion.Add(Channels(0.3, 0.02, 0.4)), Outcome::kUnusable);

@@ -86,6 +86,20 @@ TEST(StereoTracker, ABlankImageHasNothingToFollow) {
   EXPECT_TRUE(tracker.Track({0, blank, blank}).features.empty());
 }
 
+TEST(StereoTracker, AcceptsNoHalvesNothingLateAndNoPictureTwice) {
+  StereoTracker tracker({}, TestCalibration());
+  const cv::Mat a = Texture(0.0, 0.0);
+  const cv::Mat b = Texture(1.0, 0.0);
+  EXPECT_FALSE(tracker.Accepts({0, a, cv::Mat()}));
+  EXPECT_FALSE(tracker.Accepts({0, cv::Mat(), a}));
+  ASSERT_TRUE(tracker.Accepts({10, a, a}));
+  (void)tracker.Track({10, a, a});
+  EXPECT_FALSE(tracker.Accepts({10, b, b})) << "the same stamp";
+  EXPECT_FALSE(tracker.Accepts({9, b, b})) << "late";
+  EXPECT_FALSE(tracker.Accepts({20, a, a})) << "frozen";
+  EXPECT_TRUE(tracker.Accepts({20, b, b}));
+}
+
 TEST(StereoTracker, ImagesOfAnotherKindAreABrokenContract) {
   StereoTracker tracker({}, TestCalibration());
   const cv::Mat colour(376, 672, CV_8UC3, cv::Scalar(1, 2, 3));
