@@ -65,7 +65,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const TimeNs before = window_.keyframes.empty() ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Pose expected = PredictPose(features.stamp);
-  const std::vector<LandmarkView> views = RejectMoving(features, expected, report);
+  const std::vector<LandmarkView> views = RejectMoving(MatchLandmarks(features), expected, report);
   const bool starting = window_.keyframes.empty();
   std::optional<PosePrior> prior;
   if (step_ > 0) prior = {expected, MotionSigmas(ToSeconds(features.stamp - stamp_))};
@@ -129,14 +129,10 @@ std::vector<LandmarkView> StereoEstimator::MatchLandmarks(const StereoFeatures& 
   return views;
 }
 
-std::vector<LandmarkView> StereoEstimator::RejectMoving(const StereoFeatures& features,
+std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<LandmarkView>& views,
                                                         const Pose& expected, Report& report) {
-  const std::vector<LandmarkView> views = MatchLandmarks(features);
-  // Three sigmas of what constant rates miss, as far as a picture's middle moves by them.
-  const double largest_px =
-      3.0 * MotionSigmas(ToSeconds(features.stamp - stamp_))[3] * camera_.f_px;
   const std::vector<bool> verdicts =
-      MovesWithScene(camera_, views, T_WB_, expected, options_.flow_threshold_px, largest_px);
+      MovesWithScene(camera_, views, T_WB_, expected, options_.flow_threshold_px);
   std::vector<LandmarkView> kept;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (verdicts[i]) kept.push_back(views[i]);

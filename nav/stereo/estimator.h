@@ -42,7 +42,7 @@ class StereoEstimator {
   [[nodiscard]] Report ProcessFeatures(const StereoFeatures& features);
   [[nodiscard]] Pose PredictPose(TimeNs stamp) const;
   [[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const StereoFeatures& features) const;
-  [[nodiscard]] std::vector<LandmarkView> RejectMoving(const StereoFeatures& features,
+  [[nodiscard]] std::vector<LandmarkView> RejectMoving(const std::vector<LandmarkView>& views,
                                                        const Pose& expected, Report& report);
   void Follow(const PoseSolution& solution, const std::vector<LandmarkView>& views);
   void Coast(const Pose& expected, TimeNs stamp);

@@ -25,8 +25,7 @@ struct Departure {
 
 std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
                                  const std::vector<LandmarkView>& views, const Pose& T_WB_before,
-                                 const Pose& T_WB_expected, double threshold_px,
-                                 double largest_common_px) {
+                                 const Pose& T_WB_expected, double threshold_px) {
   const PixelSigmas in_px{.position_px = 1.0, .disparity_px = 1.0};
   std::vector<std::optional<Departure>> departures;
   std::vector<double> u;
@@ -44,8 +43,7 @@ std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
   }
   std::vector<bool> moves_with_scene(views.size(), false);
   if (u.empty()) return moves_with_scene;
-  Eigen::Vector2d common(Median(u), Median(v));
-  if (common.norm() > largest_common_px) common *= largest_common_px / common.norm();
+  const Eigen::Vector2d common(Median(u), Median(v));
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!departures[i]) continue;
     const double limit = threshold_px + kSpeedShare * departures[i]->predicted_px;

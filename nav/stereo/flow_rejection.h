@@ -3,9 +3,7 @@
 // [Chu2021, eq. 12] keeps displacement vectors within L +- A. One mean L is wrong for a car that
 // turns and drives forward, so each point's displacement is predicted from the expected motion and
 // the point's depth; L is the median departure from that (what a wrong expected rotation adds to
-// all), and A grows with the predicted displacement (what a wrong expected speed adds). L is no
-// larger than the expected rotation can be wrong: where a bus fills the view, the median is the
-// bus's.
+// all), and A grows with the predicted displacement (what a wrong expected speed adds).
 #pragma once
 
 #include <vector>
@@ -19,6 +17,6 @@ namespace polnav::nav {
 [[nodiscard]] std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
                                                const std::vector<LandmarkView>& views,
                                                const Pose& T_WB_before, const Pose& T_WB_expected,
-                                               double threshold_px, double largest_common_px);
+                                               double threshold_px);
 
 }  // namespace polnav::nav

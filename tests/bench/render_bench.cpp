@@ -24,7 +24,7 @@ SimulatorOptions FiveLaps() {
   options.sky.clear.model = "berry";
   options.sky.thin_cloud_cover = 0.05;
   options.world.terrain = {.slope_deg = 1.0, .camber_deg = 1.5};
-  options.world.traffic = {.cars = 10, .buses = 2, .pedestrians = 24, .speed_m_s = 7.5};
+  options.world.traffic = {.cars = 6, .pedestrians = 24, .speed_m_s = 7.5};
   options.sensors.stereo = StereoCameraOptions{};
   return options;
 }
