@@ -2,11 +2,16 @@
 #include "tools/testbed/closed_loop.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "nav/api/geometry.h"
+#include "tools/testbed/option_tree.h"
 #include "tools/testbed/scenario.h"
 
 namespace polnav::testbed {
@@ -65,6 +70,55 @@ TEST(ClosedLoop, SameSeedSameBytesWithTwoRenderThreads) {
   }
   for (std::size_t i = 0; i < one.estimators.size(); ++i) {
     EXPECT_EQ(one.estimators[i].sha256, two.estimators[i].sha256) << one.estimators[i].name;
+  }
+}
+
+// The same from the command line, in a process of its own.
+TEST(ClosedLoop, SameBytesInAFreshProcess) {
+  const std::filesystem::path out =
+      std::filesystem::temp_directory_path() / ("polnav_fresh_" + std::to_string(::getpid()));
+  const std::string command = std::string(POLNAV_BINARY) + " run " + POLNAV_SOURCE_DIR +
+                              "/scenarios/five_laps.yaml --seed 3 --duration 4 --quiet --out " +
+                              out.string() + " >/dev/null 2>&1";
+  (void)std::system(command.c_str());  // criteria of the whole drive may fail
+  std::ifstream file(out / "result.json");
+  ASSERT_TRUE(file) << command;
+  const Json result = Json::parse(file);
+  std::filesystem::remove_all(out);
+  const RunRecord here = RunClosedLoop(FiveLaps("4"), {.seed = 3}, {});
+  ASSERT_EQ(result["streams"].size(), here.streams.size());
+  for (const auto& [name, stream] : here.streams) {
+    EXPECT_EQ(result["streams"][name]["sha256"], stream.sha256) << name;
+  }
+}
+
+// Pictures are lost, frozen, torn, late and in the wrong order, and a channel of the polarimeter
+// dies.
+TEST(ClosedLoop, FaultsLeaveOtherStreamsAloneAndEstimatesFinite) {
+  const auto storm = [](const char* faults) {
+    return RunClosedLoop(FiveLaps("6", {{std::string("faults=") + faults, "test"}}), {.seed = 3},
+                         {});
+  };
+  const RunRecord calm = storm("[]");
+  const RunRecord record = storm(
+      "[{sensor: stereo, start_s: 1, duration_s: 1, stuck: {}},"
+      " {sensor: stereo, start_s: 2, duration_s: 1, corrupt: {look: garbage_rows, share: 0.5}},"
+      " {sensor: stereo, start_s: 3, duration_s: 1, reorder: {probability: 0.5, hold_s: 0.3}},"
+      " {sensor: stereo, start_s: 4, duration_s: 1, off: {}},"
+      " {sensor: polarimeter, start_s: 2, dead_channel: {}}]");
+  for (const char* name : {"truth", "imu", "reference"}) {
+    EXPECT_EQ(record.streams.at(name).sha256, calm.streams.at(name).sha256) << name;
+  }
+  for (const char* name : {"stereo", "polarimeter"}) {
+    EXPECT_NE(record.streams.at(name).sha256, calm.streams.at(name).sha256) << name;
+  }
+  for (const EstimatorRun& run : record.estimators) {
+    ASSERT_GT(run.estimates.size(), 30U) << run.name;
+    for (const nav::Estimate& estimate : run.estimates) {
+      ASSERT_TRUE(estimate.T_WB.p.allFinite() && estimate.T_WB.q.coeffs().allFinite() &&
+                  estimate.covariance.allFinite())
+          << run.name << " at " << nav::ToSeconds(estimate.stamp);
+    }
   }
 }
 

@@ -17,6 +17,13 @@ SimulatorOptions SmallOptions() {
   SimulatorOptions options;
   options.world.plaza = {
       .tree_count = 3, .lamp_count = 3, .parked_car_count = 2, .furniture_count = 3};
+  options.world.traffic = {.cars = 4, .pedestrians = 4};
+  options.sky.clouds = "few_clouds";
+  options.disturbances.resize(2);
+  options.disturbances[0].fog = FogOptions{.visibility_m = 80.0};
+  options.disturbances[1].mean_interval_s = 0.3;
+  options.disturbances[1].duration_s = 0.2;
+  options.disturbances[1].rain = LensCoverOptions{.share = 0.3};
   options.sensors.stereo = StereoCameraOptions{.width_px = 160, .height_px = 96, .focal_px = 90.0};
   options.sensors.imu = ImuOptions{};
   options.sensors.polarimeter = PolarimeterOptions{};
@@ -100,6 +107,18 @@ TEST(Simulator, SamplesEverySensorAtItsRate) {
 
 TEST(Simulator, SameSeedSameBytesWithOneRenderThreadOrTwo) {
   EXPECT_EQ(OneSecond(), RecordRun(SmallOptions(), {1, 0}, 1.0, 2));
+}
+
+// CTest runs the suite in one process; the first run of it is compared with one after another
+// scenario, here, and with one in a process of its own in tests/closed_loop.
+TEST(Simulator, SameBytesAfterAnotherScenarioRanInTheSameProcess) {
+  const Record first = OneSecond();
+  SimulatorOptions other = SmallOptions();
+  other.sky.clouds = "overcast";
+  other.world.traffic = {.cars = 9, .buses = 2};
+  other.disturbances.clear();
+  EXPECT_NE(first, RecordRun(other, {7, 3}, 0.5));
+  EXPECT_EQ(first, RecordRun(SmallOptions(), {1, 0}, 1.0));
 }
 
 TEST(Simulator, EverySeedAndTrialIsAnotherRun) {
