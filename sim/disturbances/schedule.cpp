@@ -10,7 +10,6 @@ namespace polnav::sim {
 namespace {
 
 constexpr double kRamp_s = 1.0;
-constexpr double kKoschmieder = 3.912;  // -ln 0.02 [Koschmieder1924]
 
 bool IsStretch(const DisturbanceOptions& entry) {
   return entry.low_features || entry.canopy || entry.tunnel || entry.bridge;
@@ -53,7 +52,7 @@ std::vector<DisturbanceEvent> ScheduleDisturbances(const std::vector<Disturbance
 CameraConditions ConditionsAt(const std::vector<DisturbanceEvent>& events, nav::TimeNs stamp) {
   const double t_s = nav::ToSeconds(stamp);
   CameraConditions now;
-  double extinction_1_m = 0.0;
+  double blur_1_m = 0.0;  // extinctions add up, and each is in inverse proportion to visibility
   for (const DisturbanceEvent& event : events) {
     const double share = ShareAt(event, t_s);
     if (share == 0.0) continue;
@@ -64,11 +63,11 @@ CameraConditions ConditionsAt(const std::vector<DisturbanceEvent>& events, nav::
     }
     if (what.overexposure) now.gain_share *= std::pow(what.overexposure->gain, share);
     if (what.glare) now.glare += share * what.glare->strength;
-    if (what.fog) extinction_1_m += share * kKoschmieder / what.fog->visibility_m;
+    if (what.fog) blur_1_m += share / what.fog->visibility_m;
     if (what.rain) now.rain_share = Covered(now.rain_share, share * what.rain->share);
     if (what.dirt) now.dirt_share = Covered(now.dirt_share, share * what.dirt->share);
   }
-  if (extinction_1_m > 0.0) now.visibility_m = kKoschmieder / extinction_1_m;
+  if (blur_1_m > 0.0) now.visibility_m = 1.0 / blur_1_m;
   return now;
 }
 
