@@ -22,22 +22,25 @@ class LitMeshes {
   LitMeshes(const Lighting& lighting, const SunLitTriangles& sunlit)
       : lighting_(lighting), sunlit_(sunlit) {}
 
-  // Appends those of the mesh whose light is, or is not, up to the shadow map; sun_box grows by
-  // those that get sun, in the axes along it.
-  void Append(const Mesh& mesh, bool shadow_edge, const Eigen::Matrix3d& axes,
-              Eigen::AlignedBox3d& sun_box) {
+  // Appends the mesh, what needs the shadow map last, and returns where that begins. sun_box grows
+  // by what gets sun, in the axes along it.
+  std::size_t Append(const Mesh& mesh, const Eigen::Matrix3d& axes, Eigen::AlignedBox3d& sun_box) {
     std::vector<std::array<std::uint32_t, 2>> placed(mesh.vertices.size(), {kNone, kNone});
+    std::vector<std::uint32_t> edges;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      const std::array<bool, 3> lit = LightOf(mesh, i);
-      if (edge_ != shadow_edge) continue;
+      const Lit lit = LightOf(mesh, i);
+      const bool any = lit.corner[0] || lit.corner[1] || lit.corner[2];
       for (std::size_t k = 0; k < 3; ++k) {
         const Vertex& v = mesh.vertices[mesh.indices[i + k]];
-        std::uint32_t& at = placed[mesh.indices[i + k]][lit[k] ? 1 : 0];
-        if (at == kNone) at = Place(mesh, v, lit[k]);
-        indices.push_back(at);
-        if (lit[0] || lit[1] || lit[2]) sun_box.extend(axes * v.p_W_m.cast<double>());
+        std::uint32_t& at = placed[mesh.indices[i + k]][lit.corner[k] ? 1 : 0];
+        if (at == kNone) at = Place(mesh, v, lit.corner[k]);
+        (lit.edge ? edges : indices).push_back(at);
+        if (any) sun_box.extend(axes * v.p_W_m.cast<double>());
       }
     }
+    const std::size_t middle = indices.size();
+    indices.insert(indices.end(), edges.begin(), edges.end());
+    return middle;
   }
 
   std::vector<LitVertex> vertices;
@@ -46,9 +49,14 @@ class LitMeshes {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
-  // Corners in the sun; sets edge_, for a triangle that needs the shadow map. One so small that the
-  // map's own softness is no sharper is shaded from corner to corner.
-  [[nodiscard]] std::array<bool, 3> LightOf(const Mesh& mesh, std::size_t first_index) {
+  // Which corners get sun, and whether only the shadow map knows where in between it ends.
+  struct Lit {
+    std::array<bool, 3> corner{};
+    bool edge = false;
+  };
+
+  // A triangle so small that the map's own softness is no sharper is shaded from corner to corner.
+  [[nodiscard]] Lit LightOf(const Mesh& mesh, std::size_t first_index) const {
     constexpr float kSmall_m = 0.8F;
     std::array<Eigen::Vector3f, 3> p;
     bool faces_sun = false;
@@ -57,16 +65,15 @@ class LitMeshes {
       p[k] = v.p_W_m;
       faces_sun = faces_sun || lighting_.FromSun(v.normal_W.cast<double>()) > 0.0;
     }
-    edge_ = false;
-    if (!faces_sun) return {false, false, false};
+    if (!faces_sun) return {};
     const float longest_m =
         std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
-    if (longest_m < kSmall_m)
-      return {sunlit_.IsLit(p[0]), sunlit_.IsLit(p[1]), sunlit_.IsLit(p[2])};
+    if (longest_m < kSmall_m) {
+      return {{sunlit_.IsLit(p[0]), sunlit_.IsLit(p[1]), sunlit_.IsLit(p[2])}, false};
+    }
     const SunLitness light = sunlit_.Of(p);
-    edge_ = light == SunLitness::kMixed;
     const bool lit = light != SunLitness::kDark;
-    return {lit, lit, lit};
+    return {{lit, lit, lit}, light == SunLitness::kMixed};
   }
 
   std::uint32_t Place(const Mesh& mesh, const Vertex& v, bool lit) {
@@ -81,7 +88,6 @@ class LitMeshes {
 
   const Lighting& lighting_;
   const SunLitTriangles& sunlit_;
-  bool edge_ = false;
 };
 
 // Shells about the eye that are drawn one after the other.
@@ -138,9 +144,7 @@ GpuScene::GpuScene(const GlFunctions& gl, const Scene& scene, const std::vector<
     if (mesh.vertices.empty()) continue;
     const std::size_t first = lit.indices.size();
     Eigen::AlignedBox3d sun_box;
-    lit.Append(mesh, false, axes, sun_box);
-    const std::size_t middle = lit.indices.size();
-    lit.Append(mesh, true, axes, sun_box);
+    const std::size_t middle = lit.Append(mesh, axes, sun_box);
     ranges_.push_back({SphereAround(mesh),
                        mesh.draw_distance_m,
                        textures.at(static_cast<std::size_t>(mesh.texture)),
