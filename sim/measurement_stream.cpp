@@ -140,9 +140,9 @@ MeasurementStream::TimedPicture MeasurementStream::Take(const PictureRequest& re
     taken = {.picture = camera->CaptureTruth(*frame_truth), .stage = "ground_truth"};
   } else {
     const auto& sky = std::get<SkyRequest>(request);
-    taken = {
-        .picture = nav::Measurement(simulator_.polarization_camera()->Take(sky.truth, sky.index)),
-        .stage = "sky_camera"};
+    taken = {.picture = nav::Measurement(
+                 simulator_.polarization_camera()->Take(sky.truth, sky.index, sky.fog)),
+             .stage = "sky_camera"};
   }
   const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
   taken.ms = ms.count();

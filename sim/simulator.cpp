@@ -1,11 +1,12 @@
 #include "sim/simulator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "sim/disturbances/on_the_road.h"
 #include "sim/random.h"
-#include "sim/render/lighting.h"
+#include "sim/world/fog.h"
 
 namespace polnav::sim {
 namespace {
@@ -50,6 +51,10 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
   sky_ = std::make_unique<sky::WorldSky>(
       options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"),
       CloudPassages(events_, options.vehicle, *track_));
+  if (std::any_of(events_.begin(), events_.end(),
+                  [](const DisturbanceEvent& event) { return event.what.fog.has_value(); })) {
+    fog_light_.emplace(*sky_);
+  }
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
   BuildScene(
       WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),
@@ -103,6 +108,17 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
   }
 }
 
+sky::FogAbove Simulator::FogAt(const Truth& truth) const {
+  if (!fog_light_) return {};
+  const double visibility_m = ConditionsAt(events_, truth.stamp).visibility_m;
+  if (std::isinf(visibility_m)) return {};
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const double sun_share =
+      sky_->Transmittance(fog_light_->sun_W(), truth.T_WB.p, nav::ToSeconds(truth.stamp));
+  const double fallen = fog_light_->FromSky(up) + sun_share * fog_light_->FromSun(up);
+  return {FogDepth(visibility_m), FogRadiance(fallen, visibility_m)};
+}
+
 std::vector<Simulator::Emission> Simulator::Step() {
   const Truth& now = vehicle_->truth();
   std::vector<Emission> due;
@@ -119,7 +135,7 @@ std::vector<Simulator::Emission> Simulator::Step() {
     ++imu_clock_.index;
   }
   if (polarimeter_ && polarimeter_clock_.Due(now.stamp)) {
-    due.emplace_back(polarimeter_->Sample(now, polarimeter_clock_.index++));
+    due.emplace_back(polarimeter_->Sample(now, polarimeter_clock_.index++, FogAt(now)));
   }
   if (reference_ && reference_clock_.Due(now.stamp)) {
     due.emplace_back(reference_->Sample(now, reference_clock_.index++));
@@ -133,7 +149,7 @@ std::vector<Simulator::Emission> Simulator::Step() {
                                   .conditions = ConditionsAt(events_, now.stamp)});
   }
   if (polarization_camera_ && polarization_camera_clock_.Due(now.stamp)) {
-    due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++});
+    due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++, FogAt(now)});
   }
   vehicle_->Step();
   return due;

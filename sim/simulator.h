@@ -16,6 +16,7 @@
 #include "nav/api/calibration.h"
 #include "nav/api/measurements.h"
 #include "sim/disturbances/schedule.h"
+#include "sim/render/lighting.h"
 #include "sim/sensors/frame_request.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/polarimeter.h"
@@ -70,6 +71,7 @@ struct RunKey {
 struct SkyRequest {
   Truth truth;
   std::uint64_t index = 0;
+  sky::FogAbove fog;
 };
 
 // True: a sensor of this rate can be sampled at whole physics steps.
@@ -117,9 +119,11 @@ class Simulator {
   [[nodiscard]] static Clock ClockOf(double rate_hz);
   void BuildScene(const WorldOptions& world, const SensorOptions& sensors, const RunKey& key,
                   nav::TimeNs duration);
+  [[nodiscard]] sky::FogAbove FogAt(const Truth& truth) const;
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
   std::vector<DisturbanceEvent> events_;
+  std::optional<Lighting> fog_light_;  // what falls on fogs; absent without any
   std::unique_ptr<Track> track_;
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<sky::WorldSky> sky_;

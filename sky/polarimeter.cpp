@@ -20,21 +20,33 @@ constexpr int kAzimuths = 12;
 // Stokes parameters [I, Q, U] of one ray, about the axes of S carried to the ray.
 Eigen::Vector3d LookFrom(const Eigen::Quaterniond& q_WS, const Eigen::Vector3d& ray_S,
                          const Eigen::Vector3d& observer_W, const SkyInstant& sky,
-                         const Cover& cover) {
+                         const Cover& cover, const FogAbove& fog) {
   const Eigen::Quaterniond q_SP =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray_S);
   const Eigen::Quaterniond q_WP = q_WS * q_SP;
   const Eigen::Vector3d ray_W = (q_WP * Eigen::Vector3d::UnitZ()).normalized();
   if (const auto hidden_by = cover ? cover(ray_W) : std::nullopt) return {*hidden_by, 0.0, 0.0};
   const Skylight light = sky.Look(ray_W, observer_W);
-  return StokesAbout(q_WP * Eigen::Vector3d::UnitX(), q_WP * Eigen::Vector3d::UnitY(), light);
+  const Eigen::Vector3d stokes =
+      StokesAbout(q_WP * Eigen::Vector3d::UnitX(), q_WP * Eigen::Vector3d::UnitY(), light);
+  return fog.Through(stokes, ray_W.z());
 }
 
 }  // namespace
 
+double FogAbove::Passed(double up) const {
+  return depth == 0.0 ? 1.0 : std::exp(-depth / std::max(up, 0.01));
+}
+
+Eigen::Vector3d FogAbove::Through(const Eigen::Vector3d& stokes, double up) const {
+  if (depth == 0.0) return stokes;
+  const double passed = Passed(up);
+  return passed * stokes + (1.0 - passed) * radiance * Eigen::Vector3d::UnitX();
+}
+
 ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
                           const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky,
-                          const Cover& cover) {
+                          const Cover& cover, const FogAbove& fog) {
   if (!(fov_rad >= 0.0 && fov_rad <= pi)) {
     throw std::logic_error("AverageOverCone: the cone is not between 0 and pi wide");
   }
@@ -47,7 +59,7 @@ ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
     for (int k = 0; k < kAzimuths; ++k) {
       const double azimuth = 2.0 * pi * k / kAzimuths;
       const Eigen::Vector3d ray_S(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
-      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, now, cover);
+      stokes += kWeights[ring] / kAzimuths * LookFrom(q_WS, ray_S, observer_W, now, cover, fog);
     }
   }
   if (stokes[0] <= 0.0) return {};  // black all over
@@ -56,8 +68,8 @@ ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
 
 SixChannels ReadSixChannels(const SixChannelOptics& optics, const Eigen::Quaterniond& q_WS,
                             const Eigen::Vector3d& observer_W, double t_s, const WorldSky& sky,
-                            const Cover& cover) {
-  const ConeLight light = AverageOverCone(optics.fov_rad, q_WS, observer_W, t_s, sky, cover);
+                            const Cover& cover, const FogAbove& fog) {
+  const ConeLight light = AverageOverCone(optics.fov_rad, q_WS, observer_W, t_s, sky, cover, fog);
   SixChannels reading{};
   for (std::size_t i = 0; i < reading.size(); ++i) {
     const double alpha = kPolarizerAngles_rad[i] + optics.angle_error_rad[i];

@@ -45,6 +45,16 @@ struct SixChannelOptics {
 // Hidden rays bring unpolarized light. An empty function: the sky is open everywhere.
 using Cover = std::function<std::optional<double>(const Eigen::Vector3d& ray_W)>;
 
+// A fog between the observer and the sky: unpolarized light of its own, and what it lets through.
+struct FogAbove {
+  double depth = 0.0;     // optical, straight up
+  double radiance = 0.0;  // inside
+
+  [[nodiscard]] double Passed(double up) const;  // share; up: sine of the ray's elevation
+  // Stokes parameters [I, Q, U] of a ray from the sky, after it.
+  [[nodiscard]] Eigen::Vector3d Through(const Eigen::Vector3d& stokes, double up) const;
+};
+
 // Light over the cone, about S's x axis.
 struct ConeLight {
   double i = 0.0;  // mean radiance
@@ -58,14 +68,16 @@ struct ConeLight {
 // that is 0.001 (0.02) degrees of angle.
 [[nodiscard]] ConeLight AverageOverCone(double fov_rad, const Eigen::Quaterniond& q_WS,
                                         const Eigen::Vector3d& observer_W, double t_s,
-                                        const WorldSky& sky, const Cover& cover = {});
+                                        const WorldSky& sky, const Cover& cover = {},
+                                        const FogAbove& fog = {});
 
 // Noise-free readings, not yet limited to full scale:
 // I_i = gain K I (1 + d cos(2 phi - 2 alpha_i)) + offset [Zeng2020, eq. 2].
 [[nodiscard]] SixChannels ReadSixChannels(const SixChannelOptics& optics,
                                           const Eigen::Quaterniond& q_WS,
                                           const Eigen::Vector3d& observer_W, double t_s,
-                                          const WorldSky& sky, const Cover& cover = {});
+                                          const WorldSky& sky, const Cover& cover = {},
+                                          const FogAbove& fog = {});
 
 // Electronics: noise proportional to the reading, then an analogue-to-digital converter of so many
 // bits whose full scale is 1. normals: of mean 0 and sigma 1; relative_sigma: noise over reading.

@@ -14,13 +14,10 @@
 #include "sim/render/shadows.h"
 #include "sim/render/sky_dome.h"
 #include "sim/render/surface_programs.h"
+#include "sim/world/fog.h"
 
 namespace polnav::sim {
 namespace {
-
-constexpr double kKoschmieder = 3.912;  // -ln 0.02 [Koschmieder1924]
-constexpr double kFogThickness_m = 50.0;
-constexpr double kFogAsymmetry = 0.85;  // of a droplet's scattering: mostly forward
 
 std::vector<GpuTriangles::Vertex> VerticesOf(const SkyDome& dome) {
   std::vector<GpuTriangles::Vertex> vertices;
@@ -143,20 +140,16 @@ PictureLight Renderer::Impl::LightOf(const RenderRequest& request, const nav::Po
       lighting.sun() > 0.0
           ? sky.Transmittance(lighting.sun_W(), request.T_WC.p, nav::ToSeconds(request.stamp))
           : 1.0;
-  const double extinction_1_m = kKoschmieder / request.visibility_m;
-  // What falls on a fog from above, less what it throws back (two streams [Bohren1987]): inside,
-  // light comes from all sides alike.
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const double fallen = lighting.FromSky(up) + sun_share * lighting.FromSun(up);
-  const double thrown_back = 0.75 * (1.0 - kFogAsymmetry) * extinction_1_m * kFogThickness_m;
   return {.clip_from_W = (ProjectionMatrix(view) * C_from_W).cast<float>(),
           .sun_map_from_W = shadows.standing().map_from_W(),
           .actor_map_from_W = shadows.moving().map_from_W(),
           .eye_W = request.T_WC.p.cast<float>(),
           .exposure = static_cast<float>(request.exposure),
           .sun_share = static_cast<float>(sun_share),
-          .extinction_1_m = static_cast<float>(extinction_1_m),
-          .airlight = static_cast<float>(fallen / (1.0 + thrown_back))};
+          .extinction_1_m = static_cast<float>(FogExtinction(request.visibility_m)),
+          .airlight = static_cast<float>(FogRadiance(fallen, request.visibility_m))};
 }
 
 void Renderer::Impl::DrawMask() {

@@ -25,7 +25,7 @@ struct RenderRequest {
   nav::Pose T_WC;
   nav::TimeNs stamp = 0;  // where actors and clouds are
   double exposure = 0.1;  // 255 is radiance 1 / exposure; the clear zenith has 1
-  // Of fog, whose layer is 50 m thick: where contrast falls to 2 % [Koschmieder1924].
+  // Of fog; see sim/world/fog.h.
   double visibility_m = std::numeric_limits<double>::infinity();
 };
 

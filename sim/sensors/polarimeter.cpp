@@ -22,7 +22,8 @@ Polarimeter::Polarimeter(const PolarimeterOptions& options, const sky::WorldSky&
   q_BS_ = RotationOf(nav::DegToRad(options.mount_error_sigma_deg) * GaussianVector(draw));
 }
 
-nav::PolarizationSample Polarimeter::Sample(const Truth& truth, std::uint64_t index) const {
+nav::PolarizationSample Polarimeter::Sample(const Truth& truth, std::uint64_t index,
+                                            const sky::FogAbove& fog) const {
   const Eigen::Quaterniond q_WS = truth.T_WB.q * q_BS_;
   const Eigen::Vector3d p_WS_m = truth.T_WB * options_.position_m;
   Occlusion::View view;
@@ -38,7 +39,7 @@ nav::PolarizationSample Polarimeter::Sample(const Truth& truth, std::uint64_t in
     };
   }
   const sky::SixChannels reading =
-      sky::ReadSixChannels(optics_, q_WS, p_WS_m, nav::ToSeconds(truth.stamp), *sky_, cover);
+      sky::ReadSixChannels(optics_, q_WS, p_WS_m, nav::ToSeconds(truth.stamp), *sky_, cover, fog);
   RandomStream::Sample draw = noise_.At(index);
   sky::SixChannels normals{};
   for (double& normal : normals) {

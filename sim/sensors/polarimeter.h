@@ -67,7 +67,8 @@ class Polarimeter {
               std::uint64_t trial, const Occlusion* occlusion = nullptr);
 
   // index: of the sample, from 0. Any order.
-  [[nodiscard]] nav::PolarizationSample Sample(const Truth& truth, std::uint64_t index) const;
+  [[nodiscard]] nav::PolarizationSample Sample(const Truth& truth, std::uint64_t index,
+                                               const sky::FogAbove& fog = {}) const;
 
  private:
   PolarimeterOptions options_;

@@ -121,6 +121,7 @@ Eigen::Vector3d PolarizationCamera::Light(const nav::PixelAxes& axes, const View
   } else {
     const sky::Skylight light = view.sky.Look(ray_W, view.p_WS_m);
     stokes = sky::StokesAbout(view.q_WS * axes.x_S, view.q_WS * axes.y_S, light);
+    stokes = view.fog.Through(stokes, ray_W.z());
   }
   // Flare needs the sun on the lens, not in the picture; behind cloud or wall there is none.
   if (view.sun_share > 0.0) {
@@ -142,15 +143,17 @@ Eigen::Vector3f PolarizationCamera::Grid::At(int row, int col, int step) const {
          down * ((1.0F - right) * lower[0] + right * lower[1]);
 }
 
-PolarizationCamera::View PolarizationCamera::ViewFrom(const Truth& truth) const {
+PolarizationCamera::View PolarizationCamera::ViewFrom(const Truth& truth,
+                                                      const sky::FogAbove& fog) const {
   const double t_s = nav::ToSeconds(truth.stamp);
   View view{.sky = sky_->At(t_s),
             .q_WS = truth.T_WB.q * q_BS_,
             .p_WS_m = truth.T_WB * options_.position_m,
-            .sun_W = sky_->sun_W(t_s)};
+            .sun_W = sky_->sun_W(t_s),
+            .fog = fog};
   const double elevation = std::asin(std::clamp(view.sun_W.z(), -1.0, 1.0));
   if (elevation > std::max(0.0, WallHeight(view.sun_W))) {
-    view.sun_share = view.sky.Transmittance(view.sun_W, view.p_WS_m);
+    view.sun_share = view.sky.Transmittance(view.sun_W, view.p_WS_m) * fog.Passed(view.sun_W.z());
   }
   if (occlusion_ == nullptr) return view;
   const Occlusion& scene = *occlusion_;
@@ -196,8 +199,9 @@ void PolarizationCamera::AddSun(const View& view, const Eigen::Vector2d& pixel,
   }
 }
 
-nav::PolarizationImage PolarizationCamera::Take(const Truth& truth, std::uint64_t index) const {
-  const View view = ViewFrom(truth);
+nav::PolarizationImage PolarizationCamera::Take(const Truth& truth, std::uint64_t index,
+                                                const sky::FogAbove& fog) const {
+  const View view = ViewFrom(truth, fog);
   const Grid grid = LookAround(view);
   const Eigen::Matrix<float, 4, 3> analyzers = (Exposure(grid) * analyzers_).cast<float>();
   const double top = std::ldexp(1.0, options_.bits) - 1.0;

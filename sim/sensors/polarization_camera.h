@@ -29,6 +29,7 @@
 #include "sim/truth.h"
 #include "sim/world/occlusion.h"
 #include "sky/mosaic.h"
+#include "sky/polarimeter.h"
 #include "sky/skylight.h"
 
 namespace polnav::sim {
@@ -45,7 +46,8 @@ class PolarizationCamera {
                      std::uint64_t seed, std::uint64_t trial, const Occlusion* occlusion = nullptr);
 
   // index: of the picture, from 0. Any order.
-  [[nodiscard]] nav::PolarizationImage Take(const Truth& truth, std::uint64_t index) const;
+  [[nodiscard]] nav::PolarizationImage Take(const Truth& truth, std::uint64_t index,
+                                            const sky::FogAbove& fog = {}) const;
 
  private:
   // One picture's world.
@@ -55,7 +57,8 @@ class PolarizationCamera {
     Eigen::Vector3d p_WS_m;
     Eigen::Vector3d sun_W;
     Occlusion::View scene;
-    double sun_share = 0.0;  // of the sun's own light, past clouds and obstacles
+    double sun_share = 0.0;  // of the sun's own light, past clouds, fog and obstacles
+    sky::FogAbove fog;
   };
   struct Grid {
     int cols = 0;
@@ -64,7 +67,7 @@ class PolarizationCamera {
 
     [[nodiscard]] Eigen::Vector3f At(int row, int col, int step) const;
   };
-  [[nodiscard]] View ViewFrom(const Truth& truth) const;
+  [[nodiscard]] View ViewFrom(const Truth& truth, const sky::FogAbove& fog) const;
   [[nodiscard]] Grid LookAround(const View& view) const;
   [[nodiscard]] Eigen::Vector3d Light(const nav::PixelAxes& axes, const View& view) const;
   void AddSun(const View& view, const Eigen::Vector2d& pixel, Eigen::Vector3f& stokes) const;

@@ -208,5 +208,19 @@ TEST(AverageOverCone, TakesUnpolarizedLightFromHiddenRays) {
   EXPECT_EQ(black.q, 0.0);
 }
 
+// exp(-depth / sin el) of the sky's light is left, the rest is the fog's own.
+TEST(FogAbove, LetsThroughByBeersLawAndAddsUnpolarizedLight) {
+  const FogAbove fog{.depth = 0.7, .radiance = 1.4};
+  const Eigen::Vector3d sky(1.1, 0.3, -0.2);
+  for (const double up : {1.0, 0.5}) {
+    const double left = std::exp(-0.7 / up);
+    const Eigen::Vector3d seen = fog.Through(sky, up);
+    EXPECT_NEAR(seen[0], left * 1.1 + (1.0 - left) * 1.4, 1e-12);
+    EXPECT_NEAR(seen[1], left * 0.3, 1e-12);
+    EXPECT_NEAR(seen[2], left * -0.2, 1e-12);
+  }
+  EXPECT_EQ(FogAbove{}.Through(sky, 0.3), sky);
+}
+
 }  // namespace
 }  // namespace polnav::sky
