@@ -38,11 +38,8 @@ SimulatorOptions Standing(const std::vector<DisturbanceOptions>& disturbances) {
       TurntableOptions{.position_m = {stand.x(), stand.y(), 1.2},
                        .start_heading_deg = nav::RadToDeg(std::atan2(outwards.x(), outwards.y())),
                        .dwell_s = 1000.0};
-  options.sensors.stereo = StereoCameraOptions{.rate_hz = kFrameRate_hz,
-                                               .width_px = 160,
-                                               .height_px = 96,
-                                               .focal_px = 90.0,
-                                               .ground_truth = true};
+  options.sensors.stereo = StereoCameraOptions{
+      .rate_hz = kFrameRate_hz, .width_px = 160, .height_px = 96, .focal_px = 90.0};
   options.sensors.polarimeter = PolarimeterOptions{};
   options.disturbances = disturbances;
   return options;
@@ -184,7 +181,9 @@ TEST(DisturbedStream, GlareLiftsTheDarkestParts) {
 TEST(DisturbedStream, ABusThatPassesFillsAThirdOfTheViewAndMoves) {
   DisturbanceOptions entry = From(4.0, 2.0);
   entry.passing = PassingOptions{.kind = "bus", .count = 1, .offset_m = 2.6, .speed_m_s = 5.0};
-  const Recording passed = Record(Standing({entry}), 10.0);
+  SimulatorOptions options = Standing({entry});
+  options.sensors.stereo->ground_truth = true;
+  const Recording passed = Record(options, 10.0);
   const auto moving = [&](double t_s) {
     return passed.moving_share.at(static_cast<std::size_t>(t_s * kFrameRate_hz));
   };
