@@ -101,6 +101,19 @@ TEST_F(CommandLine, JsonIsResultJsonAndNothingElse) {
   EXPECT_EQ(Result()["streams"]["imu"]["count"], 6007);  // the loop was given the seed
 }
 
+TEST_F(CommandLine, TheRunIsToldWhereToRecord) {
+  std::filesystem::path told = "untouched";
+  const ClosedLoop loop = [&](const Scenario& scenario, const RunOptions& options,
+                              const std::function<void(double)>& progress) {
+    told = options.record_folder;
+    return ExampleRun(scenario, options, progress);
+  };
+  EXPECT_EQ(CallRun({"--record", "/data/laps"}, loop), kExitHolds);
+  EXPECT_EQ(told, "/data/laps");
+  EXPECT_EQ(CallRun({}, loop), kExitHolds);
+  EXPECT_EQ(told, "");
+}
+
 TEST_F(CommandLine, EstimatorsCanBeLeftOut) {
   EXPECT_EQ(CallRun({"--estimators", "stereo"}), kExitHolds);
   EXPECT_FALSE(std::filesystem::exists(Out("stereo_polarization.tum")));

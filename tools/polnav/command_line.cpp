@@ -25,6 +25,7 @@ Json ScenarioSchema() { return OptionSchema<Scenario>(); }
 
 struct Parsed {
   RunArguments run;
+  ReplayArguments replay;
   EvaluateArguments evaluate;
   SkyArguments sky;
   CompassArguments compass;
@@ -51,9 +52,30 @@ CLI::App* AddRun(CLI::App& app, RunArguments& a) {
   run->add_option("--render-threads", a.render_threads, "Threads that render; results are the same")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  run->add_option("--record", a.record, "Folder for a dataset of all that the sensors say");
   run->add_flag("--quiet", a.quiet, "Print nothing but failures");
   run->add_flag("--json", a.json, "Print result.json instead of the table");
   return run;
+}
+
+CLI::App* AddReplay(CLI::App& app, ReplayArguments& a) {
+  CLI::App* replay = app.add_subcommand("replay", "Estimate and score on a recorded dataset");
+  replay->add_option("DATASET", a.dataset, "EuRoC folder (mav0) or KITTI odometry sequence")
+      ->required();
+  replay->add_option("--out", a.out, "Folder for the results (default: out/replay_<dataset>)");
+  replay->add_option("--rig", a.rig, "Calibrations in place of the dataset's (YAML)");
+  replay->add_option("--seed", a.seed, "Seed of the start's error and of faults");
+  replay->add_option("--set", a.set, "Change one option: key.path=value")
+      ->allow_extra_args(false)
+      ->take_all();
+  replay->add_option("--estimators", a.estimators, "Run only these: a,b")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  replay->add_option("--align", a.align, "Fit the estimates to the truth before scoring")
+      ->check(CLI::IsMember({"none", "yaw", "se3"}));
+  replay->add_flag("--quiet", a.quiet, "Print nothing but failures and warnings");
+  replay->add_flag("--json", a.json, "Print result.json instead of the table");
+  return replay;
 }
 
 CLI::App* AddEvaluate(CLI::App& app, EvaluateArguments& a) {
@@ -137,6 +159,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   app.add_flag("--print-options", parsed.print_options, "Every key of a scenario, and its default");
   app.require_subcommand(0, 1);
   const CLI::App* run = AddRun(app, parsed.run);
+  const CLI::App* replay = AddReplay(app, parsed.replay);
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
   const CLI::App* sky = AddSky(app, parsed.sky);
   const CLI::App* compass = AddCompass(app, parsed.compass);
@@ -154,6 +177,10 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   if (run->parsed()) {
     parsed.run.command_line = Joined(arguments);
     return Run(parsed.run, console, closed_loop);
+  }
+  if (replay->parsed()) {
+    parsed.replay.command_line = Joined(arguments);
+    return ReplayDataset(parsed.replay, console);
   }
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
   if (sky->parsed()) return Sky(parsed.sky, console);

@@ -19,9 +19,23 @@ struct RunArguments {
   std::optional<std::string> duration_s;
   std::string level = "image";
   int render_threads = 1;
+  std::string record;  // folder; empty: nothing is recorded
   bool quiet = false;
   bool json = false;
   std::string command_line;  // as typed, for the report
+};
+
+struct ReplayArguments {
+  std::string dataset;
+  std::string out;  // empty: out/replay_<dataset>
+  std::string rig;  // file; empty: as the dataset says
+  std::optional<std::string> seed;
+  std::vector<std::string> set;
+  std::vector<std::string> estimators;
+  std::string align;  // none, yaw, se3; empty: none with a scenario.yaml, else se3
+  bool quiet = false;
+  bool json = false;
+  std::string command_line;
 };
 
 struct EvaluateArguments {
@@ -76,6 +90,9 @@ struct CompassArguments {
 // Simulate, estimate, score; write and print the results.
 [[nodiscard]] int Run(const RunArguments& arguments, const Console& console,
                       const ClosedLoop& closed_loop);
+
+// Recorded instead of simulated: estimate, score; write and print the results.
+[[nodiscard]] int ReplayDataset(const ReplayArguments& arguments, const Console& console);
 
 // Compare two TUM files.
 [[nodiscard]] int Evaluate(const EvaluateArguments& arguments, const Console& console);

@@ -37,6 +37,7 @@ Json Compare(const std::vector<PosePair>& pairs) {
   json["ate_m"] = ToJson(Summarize(ApeTranslation(pairs)));
   json["ape_rot_deg"] = ToJson(Summarize(Degrees(ApeAngle(pairs))));
   json["rpe_1m"] = RpeJson(pairs, 1.0);
+  json["rpe_20m"] = RpeJson(pairs, 20.0);
   json["rpe_100m"] = RpeJson(pairs, 100.0);
   json["heading_deg"] = ToJson(ScoreHeading(heading_deg));
   return json;
@@ -56,7 +57,8 @@ std::string Tables(const Json& json) {
   TextTable errors({"", "rmse", "mean", "median", "std", "min", "max", "sse"});
   errors.Add(Row("ATE [m]", json["ate_m"]));
   errors.Add(Row("APE rotation [deg]", json["ape_rot_deg"]));
-  for (const auto& [key, title] : {std::pair{"rpe_1m", "RPE 1 m"}, {"rpe_100m", "RPE 100 m"}}) {
+  for (const auto& [key, title] :
+       {std::pair{"rpe_1m", "RPE 1 m"}, {"rpe_20m", "RPE 20 m"}, {"rpe_100m", "RPE 100 m"}}) {
     const Json& rpe = json[key];
     errors.Add(Row(fmt::format("{} [m]", title), rpe.is_null() ? rpe : rpe["trans_m"]));
     errors.Add(Row(fmt::format("{} [deg]", title), rpe.is_null() ? rpe : rpe["rot_deg"]));

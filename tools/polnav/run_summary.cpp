@@ -58,10 +58,11 @@ std::string CriterionLine(const CriterionResult& c) {
 }
 
 std::string PositionTables(const Scenario& scenario, const Json& result) {
-  TextTable other({"", "ATE rmse [m]", "RPE 1 m [m]", "drift [%]", "tracked"});
+  TextTable other({"", "ATE rmse [m]", "RPE 1 m [m]", "RPE 20 m [m]", "drift [%]", "tracked"});
   for (const auto& [name, scores] : result["estimators"].items()) {
     other.Add({name, Number(scores, "ate_m.rmse", 3), Number(scores, "rpe_1m.trans_m.mean", 4),
-               Number(scores, "drift_percent", 3), Number(scores, "tracked_fraction", 3)});
+               Number(scores, "rpe_20m.trans_m.mean", 3), Number(scores, "drift_percent", 3),
+               Number(scores, "tracked_fraction", 3)});
   }
   return ErrorTable("position error [m]", result, "position_m", "mean", PaperPositions(scenario)) +
          other.Text() + "\n";
@@ -77,7 +78,31 @@ std::string CompassTable(const Json& result) {
   return table.Text() + "\n";
 }
 
+// Of replays: a run's errors are never aligned.
+std::string AlignmentText(const Json& result) {
+  if (result["level"] != kReplayLevel || !result["streams"].contains("truth")) return "";
+  for (const auto& [name, scores] : result["estimators"].items()) {
+    if (!scores.contains("alignment")) continue;
+    return fmt::format(", errors after alignment to the truth ({})",
+                       scores["alignment"].get<std::string>());
+  }
+  return ", errors without alignment to the truth";
+}
+
+// Without truth: what became of the measurements.
+std::string UnscoredTable(const Json& result) {
+  TextTable table({"", "used", "unusable", "keyframes", "inliers"});
+  for (const auto& [name, run] : result["estimators"].items()) {
+    table.Add({name, Number(run, "measurements.used", 0), Number(run, "measurements.unusable", 0),
+               Number(run, "measurements.keyframes", 0), Number(run, "measurements.inliers", 0)});
+  }
+  return table.Text() + "\n";
+}
+
 std::string ErrorTables(const Scenario& scenario, const Json& result) {
+  if (!result["streams"].contains("truth") && result["level"] == kReplayLevel) {
+    return UnscoredTable(result);
+  }
   const PaperTable paper = PaperHeadings(scenario);
   return ErrorTable("heading error [deg]", result, "heading_deg",
                     paper.signed_mean ? "mean" : "mean_abs", paper) +
@@ -96,7 +121,8 @@ std::string FailureLines(const std::vector<CriterionResult>& criteria) {
 
 std::string RunSummary(const Scenario& scenario, const Json& result,
                        const std::vector<CriterionResult>& criteria) {
-  std::string text = fmt::format("{}, seed {}\n\n", scenario.name, scenario.seed);
+  std::string text =
+      fmt::format("{}, seed {}{}\n\n", scenario.name, scenario.seed, AlignmentText(result));
   if (!result["estimators"].empty()) text += ErrorTables(scenario, result);
   if (result.contains("polarization_reading_deg")) {
     text += fmt::format(
@@ -110,8 +136,9 @@ std::string RunSummary(const Scenario& scenario, const Json& result,
     for (const CriterionResult& c : criteria) text += CriterionLine(c);
     text += "\n";
   }
-  return text + fmt::format("{} s simulated in {} s: {} times real time, {} MB\n",
-                            Number(result, "sim_duration_s", 1), Number(result, "wall_s", 1),
+  const char* how = result["level"] == kReplayLevel ? "replayed" : "simulated";
+  return text + fmt::format("{} s {} in {} s: {} times real time, {} MB\n",
+                            Number(result, "sim_duration_s", 1), how, Number(result, "wall_s", 1),
                             Number(result, "real_time_factor", 2),
                             Number(result, "peak_rss_mb", 0));
 }

@@ -21,7 +21,13 @@ struct RunOptions {
   // Where the cameras' ground truth goes when sensors.stereo.ground_truth asks for it; empty:
   // nowhere.
   std::filesystem::path ground_truth_folder;
+  // Where everything that the sensors say is recorded; empty: nowhere. See dataset/euroc_writer.h.
+  std::filesystem::path record_folder;
 };
+
+// What the estimators are told about the sensors: the data sheet, and a calibration turn where the
+// scenario asks for one.
+[[nodiscard]] nav::Rig ToldRig(const Scenario& scenario, const sim::RunKey& key);
 
 // progress: called now and then with the simulated fraction of the run, 0 to 1; may be empty.
 [[nodiscard]] RunRecord RunClosedLoop(const Scenario& scenario, const RunOptions& options,

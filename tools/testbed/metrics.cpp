@@ -53,6 +53,7 @@ Json ToJson(const EstimatorScore& score) {
   Json json;
   json["ate_m"] = score.ate_m ? ToJson(*score.ate_m) : Json(nullptr);
   json["rpe_1m"] = ToJson(score.rpe_1m);
+  json["rpe_20m"] = ToJson(score.rpe_20m);
   json["rpe_100m"] = ToJson(score.rpe_100m);
   json["heading_deg"] = ToJson(score.heading_deg);
   json["position_m"] = nullptr;
@@ -78,6 +79,7 @@ std::vector<std::string> EstimatorMetrics(bool heading_only) {
   if (!heading_only) {
     full.ate_m.emplace();
     full.rpe_1m.emplace();
+    full.rpe_20m.emplace();
     full.rpe_100m.emplace();
     full.position_m.emplace();
     full.drift_percent.emplace();

@@ -80,6 +80,18 @@ std::vector<PosePair> Associate(const Trajectory& truth, const Trajectory& estim
   return pairs;
 }
 
+const char* NameOf(Alignment alignment) {
+  switch (alignment) {
+    case Alignment::kNone:
+      return "none";
+    case Alignment::kYaw:
+      return "yaw";
+    case Alignment::kSe3:
+      return "se3";
+  }
+  return "";
+}
+
 std::optional<nav::Pose> Align(const std::vector<PosePair>& pairs, Alignment alignment) {
   if (alignment == Alignment::kNone) return nav::Pose{};
   if (pairs.empty()) return std::nullopt;

@@ -34,6 +34,9 @@ enum class Alignment {
   kSe3,  // rotation and translation, Umeyama without scale
 };
 
+// "none", "yaw", "se3".
+[[nodiscard]] const char* NameOf(Alignment alignment);
+
 // T_WE maps the estimate's world into the truth's, least squares over the positions. Nothing when
 // the positions do not determine it (all on one line; for yaw: all above each other).
 [[nodiscard]] std::optional<nav::Pose> Align(const std::vector<PosePair>& pairs,

@@ -34,12 +34,20 @@ double AnsweredFraction(const OutcomeCounts& counts) {
 
 Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
   Json json = {{"sha256", run.sha256}};
+  if (truth.empty()) {  // nothing to score against
+    json["measurements"] = ToJson(run.counts);
+    return json;
+  }
   // No answer at all leaves every metric out: criteria about it fail.
   if (const auto score = Score(truth, run.estimates, run.heading_only)) {
     json.update(testbed::ToJson(*score));
     if (run.heading_only) json["tracked_fraction"] = AnsweredFraction(run.counts);
   } else {
     json["tracked_fraction"] = 0.0;
+  }
+  if (run.alignment != Alignment::kNone) {
+    json["alignment"] = NameOf(run.alignment);
+    json["nees"] = nullptr;  // the alignment took away some of what the covariance stands for
   }
   json["measurements"] = ToJson(run.counts);
   return json;

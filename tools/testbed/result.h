@@ -16,6 +16,9 @@
 
 namespace polnav::testbed {
 
+// What "level" says of a recorded dataset.
+inline constexpr const char* kReplayLevel = "replay";
+
 enum class Verdict {
   kPassed,
   kFailed,

@@ -31,4 +31,21 @@ std::string HashOf(const std::vector<nav::Estimate>& estimates) {
   return hash.HexDigest();
 }
 
+RunRecord AlignToTruth(RunRecord record, Alignment alignment) {
+  const Trajectory truth = TrajectoryOf(record.truth);
+  for (EstimatorRun& run : record.estimators) {
+    if (run.heading_only || alignment == Alignment::kNone) continue;
+    const auto T_WE = Align(Associate(truth, TrajectoryOf(run.estimates)), alignment);
+    if (!T_WE) continue;
+    nav::Matrix6d turn = nav::Matrix6d::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_WE->q.toRotationMatrix();
+    for (nav::Estimate& e : run.estimates) {
+      e.T_WB = *T_WE * e.T_WB;
+      e.covariance = turn * e.covariance * turn.transpose();
+    }
+    run.alignment = alignment;
+  }
+  return record;
+}
+
 }  // namespace polnav::testbed

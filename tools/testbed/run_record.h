@@ -13,6 +13,7 @@
 #include "nav/api/estimate.h"
 #include "nav/api/time.h"
 #include "sim/truth.h"
+#include "tools/testbed/pose_errors.h"
 
 namespace polnav::testbed {
 
@@ -40,6 +41,8 @@ struct EstimatorRun {
   std::vector<nav::Estimate> estimates;  // in order of stamps
   std::string sha256;                    // of the estimates
   OutcomeCounts counts;
+  // How the estimates were moved onto the truth before they are judged; see AlignToTruth.
+  Alignment alignment = Alignment::kNone;
 };
 
 struct StreamRecord {
@@ -76,6 +79,11 @@ struct RunRecord {
   double peak_rss_mb = 0.0;
   std::vector<double> rss_mb;  // at equal intervals over the run
 };
+
+// The record with each estimator's poses moved onto the truth, for scores and charts of datasets
+// whose world nobody told the estimators. A compass, or a path that does not determine the
+// alignment, stays as it is.
+[[nodiscard]] RunRecord AlignToTruth(RunRecord record, Alignment alignment);
 
 // SHA-256 over every byte of every estimate, in order.
 [[nodiscard]] std::string HashOf(const std::vector<nav::Estimate>& estimates);

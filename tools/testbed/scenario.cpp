@@ -30,10 +30,6 @@ void CheckBasics(const YamlDocument& document, const Scenario& scenario) {
     FailAt(document, "duration_s",
            fmt::format("{} s is not a whole number of milliseconds", scenario.duration_s));
   }
-  if (!sky::ParseUtc(scenario.site.utc)) {
-    FailAt(document, "site.utc",
-           fmt::format("'{}' is no date like 2020-11-11T07:00:00Z", scenario.site.utc));
-  }
 }
 
 void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors) {
@@ -201,13 +197,21 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckDisturbances(document, scenario);
   CheckOutages(document, scenario);
-  CheckFaults(document, scenario);
-  CheckEstimators(document, scenario);
-  CheckCriteria(document, scenario);
+  CheckListening(document, scenario);
   return scenario;
 }
 
 }  // namespace
+
+void CheckListening(const YamlDocument& document, const Scenario& scenario) {
+  if (!sky::ParseUtc(scenario.site.utc)) {
+    FailAt(document, "site.utc",
+           fmt::format("'{}' is no date like 2020-11-11T07:00:00Z", scenario.site.utc));
+  }
+  CheckFaults(document, scenario);
+  CheckEstimators(document, scenario);
+  CheckCriteria(document, scenario);
+}
 
 Scenario LoadScenario(const std::filesystem::path& path,
                       const std::vector<ScenarioOverride>& overrides) {

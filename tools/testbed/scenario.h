@@ -15,6 +15,7 @@
 #include "sim/simulator.h"
 #include "sky/skylight.h"
 #include "sky/sun.h"
+#include "tools/testbed/yaml_document.h"
 
 namespace polnav::testbed {
 
@@ -119,6 +120,10 @@ struct ScenarioOverride {
                                     const std::vector<ScenarioOverride>& overrides = {});
 [[nodiscard]] Scenario ParseScenario(const std::string& text, const std::string& file,
                                      const std::vector<ScenarioOverride>& overrides = {});
+
+// The part of the checks that holds whether the measurements are simulated or recorded: the date,
+// faults, estimators and criteria, against the sensors on board.
+void CheckListening(const YamlDocument& document, const Scenario& scenario);
 
 // Every key with its value, defaults included; reads back as the same scenario.
 [[nodiscard]] std::string ResolvedYaml(const Scenario& scenario);

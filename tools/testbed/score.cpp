@@ -81,6 +81,7 @@ void ScorePositions(const std::vector<PosePair>& pairs, const ErrorSeries& serie
     score.ate_m = Summarize(ApeTranslation(Moved(*T_WE, pairs)));
   }
   score.rpe_1m = ScoreRpe(pairs, 1.0);
+  score.rpe_20m = ScoreRpe(pairs, 20.0);
   score.rpe_100m = ScoreRpe(pairs, kDriftDistance_m);
   if (score.rpe_100m) score.drift_percent = score.rpe_100m->trans_m.mean / kDriftDistance_m * 100.0;
   score.position_m = {Summarize(series.position_m), Summarize(series.horizontal_m).rmse};

@@ -1,8 +1,8 @@
 // How good was this estimator in this run?
 //
 // ATE after SE(3) alignment (the shape of the trajectory); position and heading without any (where
-// it believed to be); RPE over 1 m and 100 m; consistency of what it said about its own errors.
-// A compass answers a heading and nothing else: what is about positions is then absent.
+// it believed to be); RPE over 1 m, 20 m and 100 m; consistency of what it said about its own
+// errors. A compass answers a heading and nothing else: what is about positions is then absent.
 // Degrees and metres, as reported. Headings are compass azimuths; an error is estimate minus truth,
 // wrapped.
 #pragma once
@@ -69,6 +69,7 @@ struct Nees {
 struct EstimatorScore {
   std::optional<Statistics> ate_m;  // absent when the truth does not determine an alignment
   std::optional<RpeScore> rpe_1m;
+  std::optional<RpeScore> rpe_20m;  // for what is too short for the next
   std::optional<RpeScore> rpe_100m;
   HeadingScore heading_deg;
   std::optional<PositionScore> position_m;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "tools/testbed/decimal_time.h"
 #include "tools/testbed/input_error.h"
 
 namespace polnav::testbed {
@@ -23,32 +24,6 @@ std::optional<double> ParseFinite(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// Decimal seconds without a detour through double: 1.6e18 ns does not fit into its 53 bits.
-// What has an exponent (numpy writes 1.6e+09) can only be read as a double.
-std::optional<nav::TimeNs> ParseStamp(std::string_view text) {
-  if (text.find_first_of("eE") != std::string_view::npos) {
-    const std::optional<double> seconds = ParseFinite(text);
-    if (!seconds || std::abs(*seconds) > 9e9) return std::nullopt;
-    return nav::FromSeconds(*seconds);
-  }
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  const std::size_t dot = std::min(text.find('.'), text.size());
-  std::string digits(text.substr(0, dot));
-  std::string fraction(text.substr(std::min(dot + 1, text.size())));
-  if (digits.empty() && fraction.empty()) return std::nullopt;
-  const std::string all = digits + fraction;
-  if (all.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-  const bool round_up = fraction.size() > 9 && fraction[9] >= '5';
-  fraction.resize(9, '0');
-  digits += fraction;
-  nav::TimeNs ns = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), ns);
-  if (error != std::errc()) return std::nullopt;
-  ns += round_up ? 1 : 0;
-  return negative ? -ns : ns;
-}
-
 StampedPose ParseLine(const std::string& line, const std::string& file, int number) {
   std::istringstream stream(line);
   const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
@@ -56,7 +31,7 @@ StampedPose ParseLine(const std::string& line, const std::string& file, int numb
     throw InputError(file, number, "",
                      fmt::format("expected 't x y z qx qy qz qw', got {} words", words.size()));
   }
-  const std::optional<nav::TimeNs> stamp = ParseStamp(words[0]);
+  const std::optional<nav::TimeNs> stamp = ParseDecimalSeconds(words[0]);
   if (!stamp) throw InputError(file, number, "", fmt::format("'{}' is no time", words[0]));
   std::array<double, 7> v{};
   for (std::size_t i = 0; i < v.size(); ++i) {

@@ -50,16 +50,17 @@ std::string ErrorTable(const Json& result, const std::string& errors, const std:
 }
 
 std::string DetailTable(const Json& result) {
-  HtmlTable table{
-      .rows = {{"", "ATE rmse [m]", "RPE 1 m [m]", "RPE 1 m [°]", "RPE 100 m [m]", "drift [%]",
-                "NEES position (3)", "NEES heading (1)", "within 3σ", "tracked", "keyframes"}}};
+  HtmlTable table{.rows = {{"", "ATE rmse [m]", "RPE 1 m [m]", "RPE 1 m [°]", "RPE 20 m [m]",
+                            "RPE 100 m [m]", "drift [%]", "NEES position (3)", "NEES heading (1)",
+                            "within 3σ", "tracked", "keyframes"}}};
   for (const auto& [name, s] : result["estimators"].items()) {
-    table.rows.push_back(
-        {name, Number(s, "ate_m.rmse", 3), Number(s, "rpe_1m.trans_m.mean", 4),
-         Number(s, "rpe_1m.rot_deg.mean", 4), Number(s, "rpe_100m.trans_m.mean", 3),
-         Number(s, "drift_percent", 3), Number(s, "nees.position", 2), Number(s, "nees.heading", 2),
-         Number(s, "nees.heading_within_3_sigma", 3), Number(s, "tracked_fraction", 3),
-         Number(s, "measurements.keyframes", 0)});
+    table.rows.push_back({name, Number(s, "ate_m.rmse", 3), Number(s, "rpe_1m.trans_m.mean", 4),
+                          Number(s, "rpe_1m.rot_deg.mean", 4), Number(s, "rpe_20m.trans_m.mean", 3),
+                          Number(s, "rpe_100m.trans_m.mean", 3), Number(s, "drift_percent", 3),
+                          Number(s, "nees.position", 2), Number(s, "nees.heading", 2),
+                          Number(s, "nees.heading_within_3_sigma", 3),
+                          Number(s, "tracked_fraction", 3),
+                          Number(s, "measurements.keyframes", 0)});
   }
   return table.Html();
 }
@@ -74,10 +75,28 @@ std::string ConsistencyTable(const Json& result) {
   return table.Html();
 }
 
+std::string PositionNote(const RunRecord& record) {
+  const std::string alignment = AlignmentText(record);
+  return alignment == "not aligned" ? "Without any alignment: where the estimator believed to be."
+                                    : "Estimates " + alignment + ".";
+}
+
 }  // namespace
+
+std::string AlignmentText(const RunRecord& record) {
+  for (const EstimatorRun& run : record.estimators) {
+    if (run.alignment == Alignment::kNone) continue;
+    return fmt::format("aligned to the truth ({})", NameOf(run.alignment));
+  }
+  return "not aligned";
+}
 
 std::string ErrorSections(const ReportInput& input) {
   if (input.result["estimators"].empty()) return "";
+  if (input.record.truth.empty()) {
+    return "<section><h2>Errors</h2><p class=\"soft\">The dataset has no truth: nothing to score."
+           "</p></section>";
+  }
   const PaperTable paper = PaperHeadings(input.scenario);
   std::string note =
       paper.signed_mean ? "Mean is of the signed error; " : "Mean is of the magnitude; ";
@@ -95,7 +114,8 @@ std::string ErrorSections(const ReportInput& input) {
     html +=
         "<section><h2>Position error [m]</h2>" +
         ErrorTable(input.result, "position_m", "mean", PaperPositions(input.scenario)) +
-        "<p class=\"soft small\">Without any alignment: where the estimator believed to be.</p>"
+        "<p class=\"soft small\">" + PositionNote(input.record) +
+        "</p>"
         "</section></div><section><h2>Trajectory and consistency</h2>" +
         DetailTable(input.result) +
         "<p class=\"soft small\">ATE after SE(3) alignment; RPE: mean over consecutive pairs by "

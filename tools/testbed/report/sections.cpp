@@ -105,7 +105,8 @@ std::string HeaderSection(const ReportInput& input) {
   return fmt::format("<header><div><h1>{}</h1><p class=\"soft\">{}</p></div>{}</header>",
                      EscapeMarkup(s.name), EscapeMarkup(s.description), verdict) +
          "<div class=\"figures\">" +
-         Figure(Text(result, "sim_duration_s", "{:.1f} s"), "simulated") +
+         Figure(Text(result, "sim_duration_s", "{:.1f} s"),
+                result["level"] == kReplayLevel ? "replayed" : "simulated") +
          Figure(Text(result, "real_time_factor", "{:.2f} ×"), "real time") +
          Figure(Text(result, "peak_rss_mb", "{:.0f} MB"), "peak memory") +
          Figure(std::to_string(input.scenario.seed), "seed") +
@@ -124,12 +125,13 @@ std::string ChartSections(const ReportInput& input) {
             "Estimate minus truth; shaded: three sigma as the estimator claims.");
   std::string html;
   if (input.record.estimators.empty() || HasPositions(input)) {
+    const std::string alignment = AlignmentText(input.record);
     html = "<div class=\"columns\">" + Chart("trajectory", "Trajectory",
-                                             "Seen from above, equal axes, not aligned.",
+                                             "Seen from above, equal axes, " + alignment + ".",
                                              "chart square");
-    if (input.record.estimators.empty()) return html + "</div>";
+    if (input.record.estimators.empty() || input.record.truth.empty()) return html + "</div>";
     html += "<div>" + heading +
-            Chart("position", "Position error over time", "Three-dimensional, not aligned.") +
+            Chart("position", "Position error over time", "Three-dimensional, " + alignment + ".") +
             "</div></div>";
   } else {
     html = heading;
@@ -140,7 +142,7 @@ std::string ChartSections(const ReportInput& input) {
                   "The heading that one sample alone would give, against the truth.");
   }
   if (!input.record.rss_mb.empty()) {
-    html += Chart("memory", "Memory", "Of the whole process, simulator included.");
+    html += Chart("memory", "Memory", "Of the whole process.");
   }
   return html + "</div>";
 }

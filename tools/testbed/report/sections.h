@@ -11,6 +11,9 @@ namespace polnav::testbed {
 // Some estimator answers more than a heading.
 [[nodiscard]] bool HasPositions(const ReportInput& input);
 
+// "not aligned", "aligned to the truth (se3)".
+[[nodiscard]] std::string AlignmentText(const RunRecord& record);
+
 [[nodiscard]] std::string HeaderSection(const ReportInput& input);
 [[nodiscard]] std::string ChartSections(const ReportInput& input);
 [[nodiscard]] std::string ErrorSections(const ReportInput& input);
