@@ -19,7 +19,7 @@ MeasurementStream::MeasurementStream(const SimulatorOptions& options, const RunK
   if (render_threads < 1) throw std::logic_error("MeasurementStream: needs a render thread");
   // Enough for every camera to be busy while one picture waits in front of the estimators.
   pictures_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;
-  if (simulator_.true_stereo() || simulator_.polarization_camera()) {
+  if (takes_pictures() || simulator_.polarization_camera()) {
     for (int i = 0; i < render_threads; ++i) threads_.emplace_back([this] { TakePictures(); });
   }
   threads_.emplace_back([this, duration] { Simulate(duration); });
@@ -35,7 +35,7 @@ MeasurementStream::~MeasurementStream() {
 void MeasurementStream::Simulate(nav::TimeNs duration) {
   try {
     std::optional<AutoExposure> auto_exposure;  // its OpenGL context belongs to this thread
-    if (simulator_.true_stereo() && options_.sensors.stereo->auto_exposure) {
+    if (takes_pictures() && options_.sensors.stereo->auto_exposure) {
       auto_exposure.emplace(simulator_.scene(), simulator_.sky(), simulator_.true_stereo()->left,
                             *options_.sensors.stereo);
     }
@@ -61,6 +61,7 @@ bool MeasurementStream::Push(const Simulator::Emission& emission) {
   if (const auto* request = std::get_if<FrameRequest>(&emission)) return PushFrame(*request);
   if (const auto* sky = std::get_if<SkyRequest>(&emission)) return Ask(*sky);
   if (const auto* truth = std::get_if<Truth>(&emission)) return Put(StreamItem(*truth));
+  if (const auto* seen = std::get_if<FeatureSightings>(&emission)) return Put(StreamItem(*seen));
   if (const auto* imu = std::get_if<nav::ImuSample>(&emission)) {
     return Put(StreamItem(nav::Measurement(*imu)));
   }

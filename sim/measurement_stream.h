@@ -24,7 +24,9 @@
 namespace polnav::sim {
 
 // A frame's truth comes out when the next frame's place is known; the last frame has none.
-using StreamItem = std::variant<Truth, nav::Measurement, FrameTruth>;
+// At measurement level sightings come in the place of pictures: what they mean in a rectified pair
+// is for who knows the nominal calibration.
+using StreamItem = std::variant<Truth, nav::Measurement, FrameTruth, FeatureSightings>;
 
 class MeasurementStream {
  public:
@@ -56,6 +58,9 @@ class MeasurementStream {
   };
   using Slot = std::variant<StreamItem, std::future<TimedPicture>>;
 
+  [[nodiscard]] bool takes_pictures() const {
+    return simulator_.true_stereo() && options_.level == Level::kImage;
+  }
   void Simulate(nav::TimeNs duration);
   void TakePictures();
   [[nodiscard]] TimedPicture Take(const PictureRequest& request,

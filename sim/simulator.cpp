@@ -20,6 +20,22 @@ std::uint64_t SeedOf(const RunKey& key, std::string_view part) {
   return high << 32U | sample.Bits();
 }
 
+// Where the cameras come by.
+std::vector<Eigen::Vector3d> ViewpointsOf(const VehicleOptions& vehicle, const Track& track,
+                                          const Terrain& terrain, double camera_height_m) {
+  constexpr double kSpacing_m = 4.0;
+  if (vehicle.turntable) {
+    const Eigen::Vector3d& p = vehicle.turntable->position_m;
+    return {p + (terrain.Height(p.x(), p.y()) + camera_height_m) * Eigen::Vector3d::UnitZ()};
+  }
+  std::vector<Eigen::Vector3d> viewpoints;
+  for (double s_m = 0.0; s_m < track.length_m(); s_m += kSpacing_m) {
+    const Eigen::Vector2d p = track.At(s_m).p_m;
+    viewpoints.emplace_back(p.x(), p.y(), terrain.Height(p.x(), p.y()) + camera_height_m);
+  }
+  return viewpoints;
+}
+
 nav::TimeNs PeriodOf(double rate_hz) { return nav::FromSeconds(1.0 / rate_hz); }
 
 }  // namespace
@@ -58,18 +74,23 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
   vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
   BuildScene(
       WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),
-      options.sensors, key, duration);
+      options, key, duration);
   EquipVehicle(options.sensors, key);
+  if (options.sensors.stereo && options.level == Level::kMeasurement) {
+    EquipWithFeatures(*options.sensors.stereo, options.vehicle, key);
+  }
 }
 
 // Whoever looks at the sky sees the same scene hide it, whether cameras look at it too or not.
-void Simulator::BuildScene(const WorldOptions& world, const SensorOptions& sensors,
+void Simulator::BuildScene(const WorldOptions& world, const SimulatorOptions& options,
                            const RunKey& key, nav::TimeNs duration) {
-  const bool hides_sky = (sensors.polarimeter || sensors.polarization_camera) && HidesSky(world);
-  if (!sensors.stereo && !hides_sky) return;
+  const SensorOptions& sensors = options.sensors;
+  hides_sky_ = (sensors.polarimeter || sensors.polarization_camera) && HidesSky(world);
+  if (!sensors.stereo && !hides_sky_) return;
+  const bool draws = sensors.stereo && options.level == Level::kImage;
   scene_ = BuildWorld(world, *track_, *terrain_, SeedOf(key, "world/plaza"),
-                      nav::ToSeconds(duration), sensors.stereo.has_value());
-  if (!hides_sky) return;
+                      nav::ToSeconds(duration), draws);
+  if (!hides_sky_ && (!sensors.stereo || draws)) return;
   occlusion_ = std::make_unique<Occlusion>(
       scene_, [lighting = Lighting(*sky_)](const Eigen::Vector3d& normal_W) {
         return lighting.OfWhite(normal_W);
@@ -91,7 +112,7 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
   }
   if (sensors.polarimeter) {
     polarimeter_clock_ = ClockOf(sensors.polarimeter->rate_hz);
-    polarimeter_.emplace(*sensors.polarimeter, *sky_, key.seed, key.trial, occlusion_.get());
+    polarimeter_.emplace(*sensors.polarimeter, *sky_, key.seed, key.trial, hides_sky());
   }
   if (sensors.reference) {
     reference_clock_ = ClockOf(sensors.reference->rate_hz);
@@ -104,8 +125,17 @@ void Simulator::EquipVehicle(const SensorOptions& sensors, const RunKey& key) {
   if (sensors.polarization_camera) {
     polarization_camera_clock_ = ClockOf(sensors.polarization_camera->rate_hz);
     polarization_camera_.emplace(*sensors.polarization_camera, *sky_, key.seed, key.trial,
-                                 occlusion_.get());
+                                 hides_sky());
   }
+}
+
+void Simulator::EquipWithFeatures(const StereoCameraOptions& stereo, const VehicleOptions& vehicle,
+                                  const RunKey& key) {
+  const auto viewpoints = ViewpointsOf(vehicle, *track_, *terrain_, stereo.position_m.z());
+  feature_camera_.emplace(
+      scene_, *occlusion_,
+      DrawFeatureCloud(scene_, stereo.features, viewpoints, key.seed, key.trial), *true_stereo_,
+      stereo, key.seed, key.trial);
 }
 
 sky::FogAbove Simulator::FogAt(const Truth& truth) const {
@@ -141,12 +171,17 @@ std::vector<Simulator::Emission> Simulator::Step() {
     due.emplace_back(reference_->Sample(now, reference_clock_.index++));
   }
   if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
-    due.emplace_back(FrameRequest{.stamp = now.stamp,
-                                  .index = stereo_clock_.index++,
-                                  .T_WB = now.T_WB,
-                                  .v_WB_m_s = now.v_WB_m_s,
-                                  .w_WB_B_rad_s = now.w_WB_B_rad_s,
-                                  .conditions = ConditionsAt(events_, now.stamp)});
+    const FrameRequest request{.stamp = now.stamp,
+                               .index = stereo_clock_.index++,
+                               .T_WB = now.T_WB,
+                               .v_WB_m_s = now.v_WB_m_s,
+                               .w_WB_B_rad_s = now.w_WB_B_rad_s,
+                               .conditions = ConditionsAt(events_, now.stamp)};
+    if (feature_camera_) {
+      due.emplace_back(feature_camera_->See(request));
+    } else {
+      due.emplace_back(request);
+    }
   }
   if (polarization_camera_ && polarization_camera_clock_.Due(now.stamp)) {
     due.emplace_back(SkyRequest{now, polarization_camera_clock_.index++, FogAt(now)});

@@ -17,6 +17,7 @@
 #include "nav/api/measurements.h"
 #include "sim/disturbances/schedule.h"
 #include "sim/render/lighting.h"
+#include "sim/sensors/feature_camera.h"
 #include "sim/sensors/frame_request.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/polarimeter.h"
@@ -52,6 +53,12 @@ struct SensorOptions {
   }
 };
 
+// What the stereo camera delivers. All other sensors are the same at both.
+enum class Level {
+  kImage,        // pictures, drawn
+  kMeasurement,  // sightings of features; a hundred times as fast
+};
+
 struct SimulatorOptions {
   sky::SiteOptions site;
   sky::SkyOptions sky;
@@ -59,6 +66,7 @@ struct SimulatorOptions {
   VehicleOptions vehicle;
   SensorOptions sensors;
   std::vector<DisturbanceOptions> disturbances;
+  Level level = Level::kImage;
 };
 
 // Which run of a scenario: everything random depends on these two and nothing else.
@@ -88,7 +96,7 @@ class Simulator {
             nav::TimeNs duration = 600 * nav::kNsPerSecond);
 
   using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
-                                FrameRequest, SkyRequest>;
+                                FrameRequest, SkyRequest, FeatureSightings>;
 
   // What falls due at the current instant, in a fixed order, the truth (at the cameras' rate, or
   // 10 Hz without cameras) first; then one physics step. The first call is at time zero.
@@ -117,8 +125,14 @@ class Simulator {
   };
 
   [[nodiscard]] static Clock ClockOf(double rate_hz);
-  void BuildScene(const WorldOptions& world, const SensorOptions& sensors, const RunKey& key,
+  void BuildScene(const WorldOptions& world, const SimulatorOptions& options, const RunKey& key,
                   nav::TimeNs duration);
+  void EquipWithFeatures(const StereoCameraOptions& stereo, const VehicleOptions& vehicle,
+                         const RunKey& key);
+  // What stands between the sky and who looks at it; null: nothing.
+  [[nodiscard]] const Occlusion* hides_sky() const {
+    return hides_sky_ ? occlusion_.get() : nullptr;
+  }
   [[nodiscard]] sky::FogAbove FogAt(const Truth& truth) const;
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
@@ -128,7 +142,8 @@ class Simulator {
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<sky::WorldSky> sky_;
   Scene scene_;
-  std::unique_ptr<Occlusion> occlusion_;  // null: nothing hides the sky
+  bool hides_sky_ = false;                // of the scene, something
+  std::unique_ptr<Occlusion> occlusion_;  // null: nobody asks what is behind what
   std::optional<Vehicle> vehicle_;
 
   Clock truth_clock_;
@@ -141,6 +156,7 @@ class Simulator {
   std::optional<Polarimeter> polarimeter_;
   std::optional<Reference> reference_;
   std::optional<nav::StereoCalibration> true_stereo_;
+  std::optional<FeatureCamera> feature_camera_;  // in the stereo camera's place
   std::optional<PolarizationCamera> polarization_camera_;
   Truth imu_interval_begin_;
 };

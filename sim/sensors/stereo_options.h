@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "sim/sensors/feature_options.h"
+
 namespace polnav::sim {
 
 // What separates the estimator's calibration from the truth; one sigma each. A pair is calibrated
@@ -69,6 +71,7 @@ struct StereoCameraOptions {
   double full_well_e = 6000.0;  // electrons at grey 255; fewer give more shot noise
   double read_noise_e = 6.0;
   StereoCalibrationErrorOptions calibration_error;
+  FeatureOptions features;  // only at measurement level, where no pictures are drawn
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -97,6 +100,7 @@ struct StereoCameraOptions {
     v("full_well_e", full_well_e, {.min = 10.0, .max = 1e6});
     v("read_noise_e", read_noise_e, {.min = 0.0, .max = 1000.0});
     v("calibration_error", calibration_error);
+    v("features", features);
   }
 };
 

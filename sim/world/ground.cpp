@@ -16,6 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kRoadTile_m = 8.0;
+constexpr double kPlain = 0.02;   // detail that bare asphalt has left
 constexpr int kRoadVariants = 7;  // the last one has a pedestrian crossing
 
 class GroundBuilder {
@@ -79,7 +80,9 @@ void AddRoad(const StreetFrame& street, const std::vector<StructureOptions>& str
   const bool has_bare = std::any_of(structures.begin(), structures.end(),
                                     [](const auto& s) { return s.kind == "plain_wall"; });
   const int bare =
-      has_bare ? scene.AddTexture([&] { return PlainTexture(512, 54.0, 0.05, bare_random); }) : 0;
+      has_bare
+          ? scene.AddTexture([&] { return PlainTexture(512, 54.0, 0.05, bare_random); }, kPlain)
+          : 0;
   constexpr int kColumns = 4;
   std::vector<Rib> ribs;
   for (int k = 0; k <= kColumns; ++k) {

@@ -46,10 +46,36 @@ class AnyInCone : public btTriangleCallback {
   bool found_ = false;
 };
 
+// Whether anything is in the way that a camera sees from its front.
+class AnyInBetween : public btTriangleRaycastCallback {
+ public:
+  AnyInBetween(const btVector3& from, const btVector3& to)
+      : btTriangleRaycastCallback(from, to, kF_FilterBackfaces) {}
+
+  btScalar reportHit(const btVector3&, btScalar, int, int) override {
+    found_ = true;
+    return 0.0;  // nothing is nearer than that
+  }
+  [[nodiscard]] bool found() const { return found_; }
+
+ private:
+  bool found_ = false;
+};
+
 struct OwnShape {
   TriangleSoup soup;  // in A
   Vector3d center_m = Vector3d::Zero();
   double radius_m = 0.0;
+
+  // Whether it is in the way between two points of A.
+  [[nodiscard]] bool IsBetween(const Vector3d& from, const Vector3d& to) const {
+    AnyInBetween search(ToBullet(from), ToBullet(to));
+    for (std::size_t i = 0; i < soup.surfaces.size() && !search.found(); ++i) {
+      btVector3 corners[3] = {soup.Corner(i, 0), soup.Corner(i, 1), soup.Corner(i, 2)};
+      search.processTriangle(corners, 0, static_cast<int>(i));
+    }
+    return search.found();
+  }
 };
 
 }  // namespace
@@ -156,11 +182,46 @@ Occlusion::View Occlusion::From(const Vector3d& eye_W_m, const Vector3d& axis_W,
     const std::optional<nav::Pose> T_WA = PoseOf(impl_->scene.actors[i].path, stamp);
     if (!T_WA) continue;
     const OwnShape& shape = impl_->actors[i];
-    if (MayMeet(*T_WA * shape.center_m - eye_W_m, shape.radius_m, axis_W, half_angle_rad)) {
-      view.actors_.push_back({i, T_WA->Inverse()});
+    const Vector3d center_W = *T_WA * shape.center_m;
+    if (MayMeet(center_W - eye_W_m, shape.radius_m, axis_W, half_angle_rad)) {
+      view.actors_.push_back({i, T_WA->Inverse(), center_W});
     }
   }
   return view;
+}
+
+Occlusion::View Occlusion::Around(const Vector3d& eye_W_m, nav::TimeNs stamp) const {
+  View view;
+  view.scene_ = this;
+  view.eye_W_m_ = eye_W_m;
+  view.may_meet_static_ = impl_->tree != nullptr;
+  for (std::size_t i = 0; i < impl_->actors.size(); ++i) {
+    const std::optional<nav::Pose> T_WA = PoseOf(impl_->scene.actors[i].path, stamp);
+    if (!T_WA) continue;
+    view.actors_.push_back({i, T_WA->Inverse(), *T_WA * impl_->actors[i].center_m});
+  }
+  return view;
+}
+
+bool Occlusion::View::Hides(const Vector3d& p_W_m) const {
+  constexpr double kAhead_m = 0.005;
+  const Impl& impl = *scene_->impl_;
+  const double distance = (p_W_m - eye_W_m_).norm();
+  if (distance <= kAhead_m) return false;
+  const Vector3d to = eye_W_m_ + (1.0 - kAhead_m / distance) * (p_W_m - eye_W_m_);
+  if (may_meet_static_) {
+    AnyInBetween search(ToBullet(eye_W_m_), ToBullet(to));
+    impl.tree->performRaycast(&search, ToBullet(eye_W_m_), ToBullet(to));
+    if (search.found()) return true;
+  }
+  const Vector3d ray = (to - eye_W_m_).normalized();
+  return std::any_of(actors_.begin(), actors_.end(), [&](const PlacedActor& actor) {
+    const OwnShape& shape = impl.actors[actor.index];
+    const Vector3d to_center = actor.center_W_m - eye_W_m_;
+    const double along = std::clamp(to_center.dot(ray), 0.0, distance);
+    if ((along * ray - to_center).squaredNorm() > shape.radius_m * shape.radius_m) return false;
+    return shape.IsBetween(actor.T_AW * eye_W_m_, actor.T_AW * to);
+  });
 }
 
 std::optional<Occlusion::Hit> Occlusion::View::Look(const Vector3d& ray_W) const {

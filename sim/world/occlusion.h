@@ -46,12 +46,17 @@ class Occlusion {
     [[nodiscard]] bool empty() const { return !may_meet_static_ && actors_.empty(); }
     // ray_W: unit vector within the cone.
     [[nodiscard]] std::optional<Hit> Look(const Eigen::Vector3d& ray_W) const;
+    // Whether a camera at the eye sees something else in front of this point, up to 5 mm before it.
+    // As pictures have it: surfaces hide what is behind their front only, and foliage has no gaps.
+    [[nodiscard]] bool Hides(const Eigen::Vector3d& p_W_m) const;
+    [[nodiscard]] const Eigen::Vector3d& eye_W_m() const { return eye_W_m_; }
 
    private:
     friend class Occlusion;
     struct PlacedActor {
       std::size_t index;
       nav::Pose T_AW;
+      Eigen::Vector3d center_W_m;
     };
     const Occlusion* scene_ = nullptr;
     Eigen::Vector3d eye_W_m_ = Eigen::Vector3d::Zero();
@@ -62,6 +67,8 @@ class Occlusion {
   // axis_W: unit vector; half_angle_rad up to pi.
   [[nodiscard]] View From(const Eigen::Vector3d& eye_W_m, const Eigen::Vector3d& axis_W,
                           double half_angle_rad, nav::TimeNs stamp) const;
+  // All around, for a few rays.
+  [[nodiscard]] View Around(const Eigen::Vector3d& eye_W_m, nav::TimeNs stamp) const;
 
  private:
   struct Impl;

@@ -19,6 +19,7 @@ void ScaleContrast(double contrast, Scene& scene) {
     const double mean = cv::mean(texture)[0];
     texture.convertTo(texture, CV_8UC1, contrast, (1.0 - contrast) * mean);
   }
+  for (double& detail : scene.detail) detail *= std::min(1.0, contrast);
   for (Mesh& mesh : scene.meshes) {
     for (Vertex& v : mesh.vertices) {
       v.shade = std::max(0.0F, 1.0F + static_cast<float>(contrast) * (v.shade - 1.0F));

@@ -60,6 +60,9 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Actor> actors;
   std::vector<cv::Mat> textures;  // CV_8UC1, linear reflectance, sides powers of two; tiled
+  // Of each texture: how many corners it has to follow, over those of a rich one. Where no picture
+  // is drawn it stands for the texture.
+  std::vector<double> detail;
 };
 
 }  // namespace polnav::sim

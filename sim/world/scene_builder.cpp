@@ -27,12 +27,13 @@ void AddQuadIndices(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t 
 
 }  // namespace
 
-int SceneBuilder::AddTexture(const std::function<cv::Mat()>& draw) {
-  return AddTexture(draws_ ? draw() : cv::Mat(1, 1, CV_8UC1, cv::Scalar(255)));
+int SceneBuilder::AddTexture(const std::function<cv::Mat()>& draw, double detail) {
+  return AddTexture(draws_ ? draw() : cv::Mat(1, 1, CV_8UC1, cv::Scalar(255)), detail);
 }
 
-int SceneBuilder::AddTexture(const cv::Mat& reflectance) {
+int SceneBuilder::AddTexture(const cv::Mat& reflectance, double detail) {
   scene_.textures.push_back(reflectance);
+  scene_.detail.push_back(detail);
   return static_cast<int>(scene_.textures.size()) - 1;
 }
 

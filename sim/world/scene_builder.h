@@ -60,9 +60,10 @@ class SceneBuilder {
   // draws: false leaves every texture a single pixel, for whom only shapes matter.
   explicit SceneBuilder(double cell_m = 32.0, bool draws = true) : cell_m_(cell_m), draws_(draws) {}
 
-  // Linear reflectance, sides powers of two.
-  int AddTexture(const std::function<cv::Mat()>& draw);
-  int AddTexture(const cv::Mat& reflectance);  // kept even where nothing is drawn
+  // Linear reflectance, sides powers of two. detail: see Scene.
+  int AddTexture(const std::function<cv::Mat()>& draw, double detail = 1.0);
+  // Kept even where nothing is drawn.
+  int AddTexture(const cv::Mat& reflectance, double detail);
 
   [[nodiscard]] bool draws() const { return draws_; }
 

@@ -154,7 +154,9 @@ class SceneFile {
     }
     entry->second.albedo = std::clamp(Luminance(color.r, color.g, color.b), 0.0, 1.0);
     const cv::Mat texture = TextureOf(source);
-    entry->second.texture = builder_.AddTexture(texture);
+    // What is of one grey has corners at its edges only.
+    const double detail = texture.total() == 1 ? 0.2 : 1.0;
+    entry->second.texture = builder_.AddTexture(texture, detail);
     return entry->second;
   }
 

@@ -16,6 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+constexpr double kPlain = 0.02;  // detail that a smooth wall has
 constexpr double kWallThickness_m = 0.33;
 constexpr double kBeforeKerb_m = 0.03;  // plain walls hide the kerb's face
 constexpr double kBehindKerb_m = 0.25;  // a tunnel's leave room for what overhangs the kerb
@@ -218,7 +219,7 @@ void AddStructures(const std::vector<StructureOptions>& structures, const Street
   Sample random = stream.At(0);
   const Materials materials{
       .concrete = scene.AddTexture([&] { return PavingTexture(4, 0.8, random); }),
-      .smooth = scene.AddTexture([&] { return PlainTexture(512, 105.0, 0.04, random); }),
+      .smooth = scene.AddTexture([&] { return PlainTexture(512, 105.0, 0.04, random); }, kPlain),
       .paint = scene.AddTexture([&] { return PlainTexture(256, 170.0, 0.25, random); })};
   for (std::size_t i = 0; i < structures.size(); ++i) {
     const StructureOptions& structure = structures[i];

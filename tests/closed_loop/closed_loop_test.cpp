@@ -122,6 +122,40 @@ TEST(ClosedLoop, FaultsLeaveOtherStreamsAloneAndEstimatesFinite) {
   }
 }
 
+// The same drive without pictures: all other sensors say the same to the last bit, and the
+// estimators follow as well as with pictures.
+TEST(ClosedLoop, MeasurementLevelFollowsTheCarWithoutPictures) {
+  const RunRecord record =
+      RunClosedLoop(FiveLaps("20"), {.seed = 1, .level = sim::Level::kMeasurement}, {});
+  EXPECT_FALSE(record.streams.contains("stereo"));
+  EXPECT_EQ(record.streams.at("stereo_features").count, 201U);
+  for (const char* name : {"truth", "imu", "polarimeter", "reference"}) {
+    EXPECT_EQ(record.streams.at(name).sha256, TwentySeconds().streams.at(name).sha256) << name;
+  }
+  for (const EstimatorRun& run : record.estimators) {
+    ASSERT_EQ(run.estimates.size(), record.truth.size()) << run.name;
+    const Eigen::Vector3d error = run.estimates.back().T_WB.p - record.truth.back().T_WB.p;
+    EXPECT_LT(error.norm(), 0.85 + 1.2) << run.name;
+  }
+}
+
+// Sightings are dropped, and come again with new stamps: whoever is frozen is not followed.
+TEST(ClosedLoop, FaultsOfTheStereoCameraActOnItsFeaturesAtMeasurementLevel) {
+  const auto run = [](const char* faults) {
+    const Scenario scenario = FiveLaps("6", {{std::string("faults=") + faults, "test"}});
+    return RunClosedLoop(scenario, {.seed = 3, .level = sim::Level::kMeasurement}, {});
+  };
+  const RunRecord calm = run("[]");
+  const RunRecord off = run("[{sensor: stereo, start_s: 2, duration_s: 1, off: {}}]");
+  const RunRecord stuck = run("[{sensor: stereo, start_s: 2, duration_s: 1, stuck: {}}]");
+  EXPECT_EQ(calm.streams.at("stereo_features").count, 61U);
+  EXPECT_EQ(off.streams.at("stereo_features").count, 51U);
+  EXPECT_EQ(stuck.streams.at("stereo_features").count, 61U);
+  EXPECT_EQ(off.streams.at("imu").sha256, calm.streams.at("imu").sha256);
+  EXPECT_EQ(stuck.estimators[0].counts.unusable, 10U);
+  EXPECT_EQ(calm.estimators[0].counts.unusable, 0U);
+}
+
 TEST(ClosedLoop, WithoutTheImuTheOtherStreamsAreUnchanged) {
   const RunRecord with = RunClosedLoop(FiveLaps("3"), {.seed = 3}, {});
   const RunRecord without =

@@ -81,6 +81,14 @@ Record RecordRun(const SimulatorOptions& options, const RunKey& key, double dura
       Recorder{record}.Vector("truth", truth->T_WB.p);
       continue;
     }
+    if (const auto* seen = std::get_if<FeatureSightings>(&*item)) {
+      EXPECT_GE(seen->stamp, newest) << "stamps never go back";
+      newest = seen->stamp;
+      for (const FeatureSighting& s : seen->sightings) {
+        record["features"].insert(record["features"].end(), {s.left_px.x(), s.left_px.y()});
+      }
+      continue;
+    }
     const auto& measurement = std::get<nav::Measurement>(*item);
     EXPECT_GE(nav::StampOf(measurement), newest) << "stamps never go back";
     newest = nav::StampOf(measurement);
@@ -103,6 +111,32 @@ TEST(Simulator, SamplesEverySensorAtItsRate) {
   EXPECT_EQ(record.at("reference").size(), 6U * 101U);
   EXPECT_EQ(record.at("stereo").size(), 11U * 2U * 160U * 96U);
   EXPECT_EQ(record.at("polarization_camera").size(), 3U * 64U * 48U);
+}
+
+// Pictures give way to sightings, and nothing else is different: not even what the polarimeter and
+// the sky camera see of traffic and fog.
+TEST(Simulator, MeasurementLevelLeavesAllOtherSensorsAsTheyAre) {
+  SimulatorOptions options = SmallOptions();
+  options.level = Level::kMeasurement;
+  Record record = RecordRun(options, {1, 0}, 1.0);
+  EXPECT_GT(record.at("features").size(), 11U * 2U * 50U);
+  record.erase("features");
+  Record with_pictures = OneSecond();
+  with_pictures.erase("stereo");
+  EXPECT_EQ(record, with_pictures);
+}
+
+TEST(Simulator, MeasurementLevelRepeatsItselfAndDependsOnSeedAndTrial) {
+  SimulatorOptions options = SmallOptions();
+  options.level = Level::kMeasurement;
+  options.sensors.polarization_camera.reset();
+  const auto features = [&](const RunKey& key) {
+    return RecordRun(options, key, 0.5).at("features");
+  };
+  const std::vector<double> first = features({1, 0});
+  EXPECT_EQ(features({1, 0}), first);
+  EXPECT_NE(features({2, 0}), first);
+  EXPECT_NE(features({1, 1}), first);
 }
 
 TEST(Simulator, SameSeedSameBytesWithOneRenderThreadOrTwo) {

@@ -68,8 +68,30 @@ TEST_F(CommandLine, BadInputIsTwoAndLeavesNothing) {
   EXPECT_EQ(err_.str(), "polnav: /nowhere.yaml: no such file\n");
   EXPECT_EQ(CallRun({"--duration", "1.0001"}), kExitBadInput);
   EXPECT_EQ(err_.str().substr(0, 27), "polnav: --duration 1.0001: ");
-  EXPECT_EQ(CallRun({"--level", "measurement"}), kExitBadInput);
   EXPECT_EQ(Call({"run", scenario_, "--out", "/proc/polnav"}), kExitBadInput);
+}
+
+TEST_F(CommandLine, TheLevelReachesTheLoopAndTheResult) {
+  sim::Level level = sim::Level::kImage;
+  const ClosedLoop look = [&](const Scenario& scenario, const RunOptions& options,
+                              const std::function<void(double)>& progress) {
+    level = options.level;
+    return ExampleRun(scenario, options, progress);
+  };
+  EXPECT_EQ(CallRun({"--level", "measurement"}, look), kExitHolds) << err_.str();
+  EXPECT_EQ(level, sim::Level::kMeasurement);
+  EXPECT_EQ(Result()["level"], "measurement");
+  EXPECT_EQ(CallRun({}, look), kExitHolds);
+  EXPECT_EQ(level, sim::Level::kImage);
+  EXPECT_EQ(Result()["level"], "image");
+}
+
+TEST_F(CommandLine, WhatOnlyPicturesHaveIsBadInputAtMeasurementLevel) {
+  EXPECT_EQ(CallRun({"--level", "measurement", "--set", "sensors.stereo.ground_truth=true"}),
+            kExitBadInput);
+  EXPECT_EQ(err_.str(),
+            "polnav: --set sensors.stereo.ground_truth=true: sensors.stereo.ground_truth: depth "
+            "and flow belong to pictures, and --level measurement draws none\n");
 }
 
 TEST_F(CommandLine, WrongUsageIsTwo) {

@@ -8,13 +8,16 @@
 namespace polnav::testbed {
 
 int Run(const RunArguments& arguments, const Console& console, const ClosedLoop& closed_loop) {
-  if (arguments.level != "image") {
-    throw InputError("--level " + arguments.level, 0, "",
-                     "not available; every sensor is simulated at level 'image'");
+  const sim::Level level =
+      arguments.level == "measurement" ? sim::Level::kMeasurement : sim::Level::kImage;
+  if (level == sim::Level::kMeasurement && !arguments.record.empty()) {
+    throw InputError("--record " + arguments.record, 0, "",
+                     "a recording holds pictures, which --level measurement does not draw");
   }
   const Scenario scenario = LoadScenario(
       arguments.scenario,
-      OverridesOf(arguments.set, arguments.seed, arguments.duration_s, arguments.estimators));
+      OverridesOf(arguments.set, arguments.seed, arguments.duration_s, arguments.estimators),
+      level);
   const std::filesystem::path stem = std::filesystem::path(arguments.scenario).stem();
   OutputFolder folder(arguments.out.empty() ? "out" / stem : std::filesystem::path(arguments.out));
 
@@ -22,6 +25,7 @@ int Run(const RunArguments& arguments, const Console& console, const ClosedLoop&
   RunOptions options{.seed = scenario.seed,
                      .trial = 0,
                      .render_threads = arguments.render_threads,
+                     .level = level,
                      .ground_truth_folder = {},
                      .record_folder = arguments.record};
   if (scenario.sensors.stereo && scenario.sensors.stereo->ground_truth) {

@@ -8,6 +8,7 @@
 #include "tools/testbed/dataset/euroc_writer.h"
 #include "tools/testbed/ground_truth_files.h"
 #include "tools/testbed/listener.h"
+#include "tools/testbed/sightings.h"
 
 namespace polnav::testbed {
 namespace {
@@ -21,7 +22,8 @@ class Loop {
         key_{options.seed, options.trial},
         duration_(nav::FromSeconds(scenario.duration_s)),
         rig_(ToldRig(scenario, key_)),
-        listener_(scenario, rig_, key_, duration_),
+        listener_(scenario, rig_, key_, duration_, options.level),
+        level_(options.level),
         render_threads_(options.render_threads) {
     if (!options.record_folder.empty()) {
       recording_.emplace(options.record_folder, scenario, rig_);
@@ -31,19 +33,26 @@ class Loop {
           options.ground_truth_folder,
           sim::DrawTrueStereo(*scenario.sensors.stereo, options.seed, options.trial));
     }
+    if (level_ == sim::Level::kMeasurement && rig_.stereo) {
+      sightings_.emplace(scenario.estimators.stereo.tracker, *rig_.stereo,
+                         WantsDescriptors(scenario));
+    }
   }
 
   RunRecord Run(const std::function<void(double)>& progress) {
     const auto begin = Clock::now();
-    sim::MeasurementStream stream({scenario_.site, scenario_.sky, scenario_.world,
-                                   scenario_.vehicle, scenario_.sensors, scenario_.disturbances},
-                                  key_, duration_, render_threads_);
+    sim::MeasurementStream stream(
+        {scenario_.site, scenario_.sky, scenario_.world, scenario_.vehicle, scenario_.sensors,
+         scenario_.disturbances, level_},
+        key_, duration_, render_threads_);
     while (const auto item = stream.Next()) {
       if (const auto* truth = std::get_if<sim::Truth>(&*item)) {
         Take(*truth);
         if (progress) progress(nav::ToSeconds(truth->stamp) / scenario_.duration_s);
       } else if (const auto* frame = std::get_if<sim::FrameTruth>(&*item)) {
         if (ground_truth_) ground_truth_->Write(*frame);
+      } else if (const auto* seen = std::get_if<sim::FeatureSightings>(&*item)) {
+        listener_.Hear(sightings_->Rectify(*seen));
       } else {
         Take(std::get<nav::Measurement>(*item));
       }
@@ -74,7 +83,9 @@ class Loop {
   nav::TimeNs duration_;
   nav::Rig rig_;
   Listener listener_;
+  sim::Level level_;
   int render_threads_;
+  std::optional<SightingsRectifier> sightings_;
   std::optional<GroundTruthFiles> ground_truth_;
   std::optional<EurocWriter> recording_;
   bool started_ = false;

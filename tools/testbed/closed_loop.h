@@ -18,6 +18,7 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::uint64_t trial = 0;
   int render_threads = 1;
+  sim::Level level = sim::Level::kImage;
   // Where the cameras' ground truth goes when sensors.stereo.ground_truth asks for it; empty:
   // nowhere.
   std::filesystem::path ground_truth_folder;

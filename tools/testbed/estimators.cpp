@@ -45,6 +45,12 @@ bool ClosesLoops(const Scenario& scenario, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+bool WantsDescriptors(const Scenario& scenario) {
+  const auto& run = scenario.estimators.run;
+  return std::any_of(run.begin(), run.end(),
+                     [&](const std::string& name) { return ClosesLoops(scenario, name); });
+}
+
 nav::SunModel SunFor(const sky::SiteOptions& site) {
   const auto utc = sky::ParseUtc(site.utc);
   if (!utc) throw std::logic_error("SunFor: site.utc is no date: " + site.utc);

@@ -65,6 +65,9 @@ using AnyEstimator =
 
 [[nodiscard]] bool ClosesLoops(const Scenario& scenario, const std::string& name);
 
+// An estimator that runs closes loops: features need descriptors.
+[[nodiscard]] bool WantsDescriptors(const Scenario& scenario);
+
 // The estimators' sun: from the place and date they are told, not from the simulator.
 [[nodiscard]] nav::SunModel SunFor(const sky::SiteOptions& site);
 

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 
+#include "tools/testbed/level_checks.h"
 #include "tools/testbed/option_loader.h"
 
 namespace polnav::testbed {
 namespace {
 
-std::vector<std::string> SensorsOnBoard(const sim::SensorOptions& sensors) {
+std::vector<std::string> SensorsOnBoard(const sim::SensorOptions& sensors, sim::Level level) {
   std::vector<std::string> names;
   if (sensors.stereo) names.emplace_back("stereo");
+  if (sensors.stereo && level == sim::Level::kMeasurement) names.emplace_back("stereo_features");
   if (sensors.imu) names.emplace_back("imu");
   if (sensors.polarimeter) names.emplace_back("polarimeter");
   if (sensors.polarization_camera) names.emplace_back("polarization_camera");
@@ -21,8 +23,7 @@ std::vector<std::string> SensorsOnBoard(const sim::SensorOptions& sensors) {
 }
 
 void CheckSensor(const YamlDocument& document, const std::string& key, const std::string& sensor,
-                 const sim::SensorOptions& sensors) {
-  const std::vector<std::string> known = SensorsOnBoard(sensors);
+                 const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), sensor) != known.end()) return;
   if (sensor.empty()) {
     FailAt(document, key,
@@ -137,17 +138,18 @@ void CheckOverlaps(const YamlDocument& document, const std::vector<sim::FaultOpt
 
 }  // namespace
 
-void CheckFaults(const YamlDocument& document, const Scenario& scenario) {
+void CheckFaults(const YamlDocument& document, const Scenario& scenario, sim::Level level) {
+  const std::vector<std::string> known = SensorsOnBoard(scenario.sensors, level);
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const sim::FaultOptions& fault = scenario.faults[i];
     const std::string key = fmt::format("faults.{}", i);
-    CheckSensor(document, key, fault.sensor, scenario.sensors);
+    CheckSensor(document, key, fault.sensor, known);
     CheckKind(document, key, fault);
     CheckAmounts(document, key, fault);
     CheckParts(document, key, fault);
     CheckEnd(document, key, scenario, fault);
   }
-  CheckOverlaps(document, scenario.faults);
+  CheckOverlaps(document, FaultsAt(level, scenario.faults));
 }
 
 }  // namespace polnav::testbed

@@ -1,13 +1,14 @@
 #include "tools/testbed/listener.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "sim/random.h"
+#include "tools/testbed/level_checks.h"
 #include "tools/testbed/memory_use.h"
+#include "tools/testbed/sightings.h"
 #include "tools/testbed/stream_hash.h"
 
 namespace polnav::testbed {
@@ -45,17 +46,16 @@ nav::StartPrior GrantStart(const StartOptions& start, const sim::Truth& truth,
 }
 
 Listener::Listener(const Scenario& scenario, nav::Rig rig, const sim::RunKey& key,
-                   nav::TimeNs duration)
+                   nav::TimeNs duration, sim::Level level)
     : scenario_(scenario),
       rig_(std::move(rig)),
       duration_(duration),
-      faults_(scenario.faults, rig_, key.seed, key.trial),
+      faults_(FaultsAt(level, scenario.faults), rig_, key.seed, key.trial),
       readings_(rig_.polarimeter, SunFor(scenario.site)) {
-  const auto& run = scenario_.estimators.run;
-  const bool describe = std::any_of(run.begin(), run.end(), [&](const std::string& name) {
-    return ClosesLoops(scenario_, name);
-  });
-  if (rig_.stereo) tracker_.emplace(scenario_.estimators.stereo.tracker, *rig_.stereo, describe);
+  if (rig_.stereo) {
+    tracker_.emplace(scenario_.estimators.stereo.tracker, *rig_.stereo,
+                     WantsDescriptors(scenario_));
+  }
 }
 
 void Listener::Start(const nav::StartPrior& start) {
@@ -94,6 +94,10 @@ void Listener::Take(const nav::Measurement& measurement) {
     TakeImages(*images);
     return;
   }
+  if (const auto* features = std::get_if<nav::StereoFeatures>(&measurement)) {
+    TakeSeen(*features);
+    return;
+  }
   if (const auto* light = std::get_if<nav::PolarizationSample>(&measurement)) {
     readings_.Add(*light);
   }
@@ -112,16 +116,33 @@ void Listener::Take(const nav::Measurement& measurement) {
 void Listener::TakeImages(const nav::StereoImages& images) {
   if (estimators_.empty()) return;
   if (!tracker_->Accepts(images)) {
-    for (RunningEstimator& e : estimators_) e.run.counts.Add({.outcome = nav::Outcome::kUnusable});
+    LeaveOut();
     return;
   }
   const auto begin = Clock::now();
-  const nav::Measurement features = tracker_->Track(images);
+  const nav::StereoFeatures features = tracker_->Track(images);
   record_.timing["front_end"].ms.push_back(MsSince(begin));
   KeepSampleImage(images);
+  TakeFeatures(features);
+}
+
+void Listener::LeaveOut() {
+  for (RunningEstimator& e : estimators_) e.run.counts.Add({.outcome = nav::Outcome::kUnusable});
+}
+
+void Listener::TakeSeen(const nav::StereoFeatures& features) {
+  if (newest_seen_ && !IsNews(features, *newest_seen_)) {
+    LeaveOut();
+    return;
+  }
+  newest_seen_ = features;
+  TakeFeatures(features);
+}
+
+void Listener::TakeFeatures(const nav::StereoFeatures& features) {
   for (RunningEstimator& e : estimators_) {
     const auto estimator_begin = Clock::now();
-    Feed(features, e);
+    Feed(nav::Measurement(features), e);
     record_.timing[e.run.name].ms.push_back(MsSince(estimator_begin));
   }
 }

@@ -32,7 +32,8 @@ class Listener {
  public:
   // Of the scenario only site, faults and estimators matter here. rig: what the estimators are
   // told. duration: of the whole run, to spread pictures and looks at the memory over it.
-  Listener(const Scenario& scenario, nav::Rig rig, const sim::RunKey& key, nav::TimeNs duration);
+  Listener(const Scenario& scenario, nav::Rig rig, const sim::RunKey& key, nav::TimeNs duration,
+           sim::Level level = sim::Level::kImage);
 
   // Once, before the first measurement.
   void Start(const nav::StartPrior& start);
@@ -52,6 +53,9 @@ class Listener {
 
   void Take(const nav::Measurement& measurement);
   void TakeImages(const nav::StereoImages& images);
+  void TakeSeen(const nav::StereoFeatures& features);
+  void TakeFeatures(const nav::StereoFeatures& features);
+  void LeaveOut();
   static void Feed(const nav::Measurement& measurement, RunningEstimator& e);
   void LookAtMemory(nav::TimeNs stamp);
   [[nodiscard]] bool IsSampleDue(nav::TimeNs stamp) const;
@@ -64,6 +68,7 @@ class Listener {
   sim::FaultInjector faults_;
   PolarizationReadings readings_;
   std::optional<nav::StereoTracker> tracker_;
+  std::optional<nav::StereoFeatures> newest_seen_;  // where no pictures are drawn
   std::vector<RunningEstimator> estimators_;
   std::map<std::string, Sha256> hashes_;
   RunRecord record_;

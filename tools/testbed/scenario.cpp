@@ -13,6 +13,7 @@
 #include "tools/testbed/disturbance_checks.h"
 #include "tools/testbed/estimators.h"
 #include "tools/testbed/fault_checks.h"
+#include "tools/testbed/level_checks.h"
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
 #include "tools/testbed/option_tree.h"
@@ -182,7 +183,8 @@ void CheckCriteria(const YamlDocument& document, const Scenario& scenario) {
   }
 }
 
-Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>& overrides) {
+Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>& overrides,
+                      sim::Level level) {
   for (const auto& [assignment, source] : overrides) {
     ApplyOverride(document, assignment, source);
   }
@@ -197,30 +199,31 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
   CheckDisturbances(document, scenario);
   CheckOutages(document, scenario);
-  CheckListening(document, scenario);
+  CheckListening(document, scenario, level);
+  CheckLevel(document, scenario, level);
   return scenario;
 }
 
 }  // namespace
 
-void CheckListening(const YamlDocument& document, const Scenario& scenario) {
+void CheckListening(const YamlDocument& document, const Scenario& scenario, sim::Level level) {
   if (!sky::ParseUtc(scenario.site.utc)) {
     FailAt(document, "site.utc",
            fmt::format("'{}' is no date like 2020-11-11T07:00:00Z", scenario.site.utc));
   }
-  CheckFaults(document, scenario);
+  CheckFaults(document, scenario, level);
   CheckEstimators(document, scenario);
   CheckCriteria(document, scenario);
 }
 
 Scenario LoadScenario(const std::filesystem::path& path,
-                      const std::vector<ScenarioOverride>& overrides) {
-  return FromDocument(ReadYaml(path), overrides);
+                      const std::vector<ScenarioOverride>& overrides, sim::Level level) {
+  return FromDocument(ReadYaml(path), overrides, level);
 }
 
 Scenario ParseScenario(const std::string& text, const std::string& file,
-                       const std::vector<ScenarioOverride>& overrides) {
-  return FromDocument(ParseYaml(text, file), overrides);
+                       const std::vector<ScenarioOverride>& overrides, sim::Level level) {
+  return FromDocument(ParseYaml(text, file), overrides, level);
 }
 
 std::string ResolvedYaml(const Scenario& scenario) { return ToYaml(OptionValues(scenario)); }

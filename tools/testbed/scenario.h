@@ -115,15 +115,19 @@ struct ScenarioOverride {
   std::string source;      // how the user said it
 };
 
-// Throws InputError for whatever a run could not make sense of, before anything is simulated.
+// Throws InputError for whatever a run at this level could not make sense of, before anything is
+// simulated.
 [[nodiscard]] Scenario LoadScenario(const std::filesystem::path& path,
-                                    const std::vector<ScenarioOverride>& overrides = {});
+                                    const std::vector<ScenarioOverride>& overrides = {},
+                                    sim::Level level = sim::Level::kImage);
 [[nodiscard]] Scenario ParseScenario(const std::string& text, const std::string& file,
-                                     const std::vector<ScenarioOverride>& overrides = {});
+                                     const std::vector<ScenarioOverride>& overrides = {},
+                                     sim::Level level = sim::Level::kImage);
 
 // The part of the checks that holds whether the measurements are simulated or recorded: the date,
 // faults, estimators and criteria, against the sensors on board.
-void CheckListening(const YamlDocument& document, const Scenario& scenario);
+void CheckListening(const YamlDocument& document, const Scenario& scenario,
+                    sim::Level level = sim::Level::kImage);
 
 // Every key with its value, defaults included; reads back as the same scenario.
 [[nodiscard]] std::string ResolvedYaml(const Scenario& scenario);

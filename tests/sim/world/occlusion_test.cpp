@@ -72,6 +72,40 @@ TEST(Occlusion, KnowsWhenNothingIsInTheCone) {
   EXPECT_TRUE(Occlusion(nothing, White).From({0, 0, 1}, Vector3d::UnitZ(), 1.5, 0).empty());
 }
 
+// A camera looks up at a square: it hides what is above it, and nothing below it, itself included.
+// From above it is not drawn. Foliage has no gaps in pictures.
+TEST(Occlusion, HidesFromCamerasWhatIsBehindAFront) {
+  Scene scene;
+  scene.meshes = {Ceiling({0.0, 0.0, 5.0}, 2.0, 0.3F)};
+  const Occlusion occlusion(scene, White);
+  const auto below = occlusion.Around({0.0, 0.0, 1.0}, 0);
+  for (double x = 0.1; x < 8.0; x += 0.2) {
+    EXPECT_EQ(below.Hides({x, 0.0, 9.0}), x < 4.0) << x;
+    EXPECT_FALSE(below.Hides({x, 0.0, 4.9})) << x;
+    EXPECT_FALSE(below.Hides({x, 0.0, 5.0})) << "its own points, " << x;
+  }
+  EXPECT_FALSE(below.Hides({0.0, 0.0, -9.0})) << "the other way";
+  EXPECT_FALSE(occlusion.Around({0.0, 0.0, 9.0}, 0).Hides({0.0, 0.0, 1.0}));
+}
+
+TEST(Occlusion, AnActorHidesWhileItIsThere) {
+  Actor actor{.name = "roof", .meshes = {Ceiling({0.0, 0.0, 5.0}, 2.0)}};
+  nav::Pose T_WA;
+  actor.path.push_back({0, T_WA});
+  T_WA.p.x() = 10.0;
+  actor.path.push_back({10 * nav::kNsPerSecond, T_WA});
+  Scene scene;
+  scene.actors = {actor};
+  const Occlusion occlusion(scene, White);
+  const auto hides = [&](double t_s) {
+    return occlusion.Around({0.0, 0.0, 1.0}, nav::FromSeconds(t_s)).Hides({0.0, 0.0, 9.0});
+  };
+  EXPECT_TRUE(hides(0.0));
+  EXPECT_TRUE(hides(1.9));
+  EXPECT_FALSE(hides(2.1));
+  EXPECT_FALSE(hides(11.0));
+}
+
 // 4000 rays through one layer: the share that meets leaves is `cover` within 3 sigma of the
 // binomial, spots of 0.15 m taken as independent. Two layers leave the product.
 TEST(Occlusion, LetsLightThroughFoliageAtSpotsThatStay) {
