@@ -1,113 +1,97 @@
 #include "nav/graph/bundle_adjustment.h"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <memory>
 
-#include "nav/graph/costs.h"
+#include "nav/graph/edges.h"
+#include "nav/graph/normal_equations.h"
 
 namespace polnav::nav {
 namespace {
 
-// Owns what Ceres works on and writes the solution back. Ceres eliminates the blocks of a group in
-// the order of their addresses: each kind lives in one array, in the window's order, or the sums
-// would depend on where the heap put things.
-class Problem {
- public:
-  Problem(const RectifiedCamera& camera, const BundleAdjustmentOptions& options, Window& window)
-      : camera_(camera), options_(options), window_(window), huber_(options.huber_sigmas) {
-    ceres::Problem::Options problem_options;
-    problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_ = std::make_unique<ceres::Problem>(problem_options);
-    AddKeyframes();
-    AddLandmarks();
-  }
+// Levenberg-Marquardt. The window is nearly linear about the last solution: no damping until a step
+// fails. It would hold on to old values: keyframes' velocities are tied to each other by the IMU a
+// million times more firmly than their common value is known.
+constexpr double kFirstDamping = 1e-8;
+constexpr double kDampingFactor = 10.0;
+constexpr double kMostDamping = 1e2;
+// A smaller relative gain of cost is no gain.
+constexpr double kLeastGain = 1e-4;
 
-  BundleAdjustmentSummary Solve() {
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_SCHUR;
-    solver.linear_solver_ordering = ordering_;
-    solver.max_num_iterations = options_.max_iterations;
-    solver.num_threads = 1;  // sums in one order: the same bytes everywhere
-    solver.function_tolerance = 1e-6;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, problem_.get(), &summary);
-    if (summary.IsSolutionUsable()) WriteBack();
-    return {.usable = summary.IsSolutionUsable(),
-            .iterations = static_cast<int>(summary.iterations.size()),
-            .initial_cost = summary.initial_cost,
-            .final_cost = summary.final_cost};
+void Step(const NormalEquations& equations, const Eigen::VectorXd& step, double damping,
+          Window& window) {
+  const WindowLayout& layout = equations.layout();
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    Keyframe& keyframe = window.keyframes[i];
+    keyframe.T_WB = Perturb(keyframe.T_WB, step.segment<6>(layout.Pose(i)));
+    if (!layout.inertial) continue;
+    const auto at = layout.Motion(i);
+    keyframe.motion.v_WI += step.segment<3>(at);
+    keyframe.motion.gyro_bias += step.segment<3>(at + 3);
+    keyframe.motion.accel_bias += step.segment<3>(at + 6);
+  }
+  const auto landmark_steps = equations.LandmarkSteps(step, damping);
+  auto next = landmark_steps.begin();
+  for (auto& [id, landmark] : window.landmarks) landmark.coordinates += *next++;
+}
+
+// The values of the unknowns, to return to.
+class Values {
+ public:
+  explicit Values(const Window& window) {
+    for (const Keyframe& k : window.keyframes) states_.emplace_back(k.T_WB, k.motion);
+    for (const auto& [id, landmark] : window.landmarks) {
+      coordinates_.push_back(landmark.coordinates);
+    }
+  }
+  void Restore(Window& window) const {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      window.keyframes[i].T_WB = states_[i].first;
+      window.keyframes[i].motion = states_[i].second;
+    }
+    auto next = coordinates_.begin();
+    for (auto& [id, landmark] : window.landmarks) landmark.coordinates = *next++;
   }
 
  private:
-  void AddKeyframes() {
-    ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
-    poses_.reserve(window_.keyframes.size());
-    for (const Keyframe& k : window_.keyframes) poses_.push_back(ToBlock(k.T_WB));
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      problem_->AddParameterBlock(poses_[i].data(), 7, &manifold_);
-      ordering_->AddElementToGroup(poses_[i].data(), 1);
-      const Keyframe& k = window_.keyframes[i];
-      if (k.heading) {
-        problem_->AddResidualBlock(new HeadingCost(*k.heading), nullptr, poses_[i].data());
-      }
-      if (k.level) problem_->AddResidualBlock(new LevelCost(*k.level), nullptr, poses_[i].data());
-    }
-    std::vector<double*> first;
-    for (std::size_t i = 0; i < window_.prior.linearized.size(); ++i) {
-      first.push_back(poses_[i].data());
-    }
-    problem_->AddResidualBlock(new PriorCost(window_.prior), nullptr, first);
-  }
-
-  void AddLandmarks() {
-    coordinates_.reserve(window_.landmarks.size());
-    for (const auto& [id, landmark] : window_.landmarks) {
-      coordinates_.push_back(landmark.coordinates);
-      double* coordinates = coordinates_.back().data();
-      problem_->AddParameterBlock(coordinates, 3);
-      ordering_->AddElementToGroup(coordinates, 0);
-      const std::size_t host = IndexOf(window_, landmark.host);
-      for (const Sighting& s : landmark.sightings) {
-        if (s.keyframe == landmark.host) {
-          problem_->AddResidualBlock(new HostCost(camera_, s.pixel, options_.sigmas), &huber_,
-                                     coordinates);
-          continue;
-        }
-        problem_->AddResidualBlock(new ReprojectionCost(camera_, s.pixel, options_.sigmas), &huber_,
-                                   poses_[host].data(), poses_[IndexOf(window_, s.keyframe)].data(),
-                                   coordinates);
-      }
-    }
-  }
-
-  void WriteBack() {
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      window_.keyframes[i].T_WB = ToPose(poses_[i].data());
-    }
-    std::size_t next = 0;
-    for (auto& [id, landmark] : window_.landmarks) landmark.coordinates = coordinates_[next++];
-  }
-
-  const RectifiedCamera& camera_;
-  const BundleAdjustmentOptions& options_;
-  Window& window_;
-  ceres::HuberLoss huber_;
-  PoseManifold manifold_;
-  std::vector<PoseBlock> poses_;
+  std::vector<std::pair<Pose, Motion>> states_;
   std::vector<Eigen::Vector3d> coordinates_;
-  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
-  std::unique_ptr<ceres::Problem> problem_;
 };
 
 }  // namespace
 
 BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
                                      const BundleAdjustmentOptions& options, Window& window) {
-  return Problem(camera, options, window).Solve();
+  NormalEquations equations = LinearizeWindow(camera, options, window);
+  BundleAdjustmentSummary summary{.initial_cost = equations.cost(), .final_cost = equations.cost()};
+  double damping = 0.0;
+  while (summary.iterations < options.max_iterations && damping <= kMostDamping) {
+    ++summary.iterations;
+    const NormalEquations::Reduced reduced = equations.Reduce(damping);
+    const Eigen::LDLT<Eigen::MatrixXd> solver(reduced.H);
+    const Eigen::VectorXd step = -solver.solve(reduced.g);
+    if (solver.info() != Eigen::Success || !step.allFinite()) {
+      damping = std::max(kFirstDamping, damping * kDampingFactor);
+      continue;
+    }
+    summary.usable = true;
+    const Values before(window);
+    Step(equations, step, damping, window);
+    NormalEquations next = LinearizeWindow(camera, options, window);
+    const double gain = equations.cost() - next.cost();
+    if (!(gain >= 0.0)) {
+      before.Restore(window);
+      if (-gain <= kLeastGain * equations.cost()) break;  // at the bottom, but for rounding
+      damping = std::max(kFirstDamping, damping * kDampingFactor);
+      continue;
+    }
+    const bool done = gain <= kLeastGain * equations.cost();
+    equations = std::move(next);
+    summary.final_cost = equations.cost();
+    damping = 0.0;
+    if (done) break;
+  }
+  return summary;
 }
 
 std::vector<std::uint64_t> RemoveOutliers(const RectifiedCamera& camera, const PixelSigmas& sigmas,

@@ -1,7 +1,7 @@
 // Which poses and landmarks fit everything in the window best?
 //
-// Minimizes [Chu2021, eq. 16] over the sliding window with Ceres: Huber-robust stereo
-// reprojections, headings, levelling, and the marginalization prior.
+// Minimizes [Chu2021, eq. 16] over the sliding window by Levenberg-Marquardt: Huber-robust stereo
+// reprojections and IMU sums, headings, and the marginalization prior.
 #pragma once
 
 #include "nav/graph/window.h"

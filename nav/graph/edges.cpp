@@ -45,16 +45,39 @@ Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta) {
   return Eigen::Matrix3d::Identity() - 0.5 * s + c * s * s;
 }
 
-Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance) {
-  const Eigen::LLT<Matrix6d> llt(covariance);
+namespace {
+
+// Jacobian of a prior: the inverse of the covariance's Cholesky factor.
+template <int kSize>
+Eigen::MatrixXd RootInformation(const Eigen::Matrix<double, kSize, kSize>& covariance) {
+  const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> llt(covariance);
   if (llt.info() != Eigen::Success) {
     throw std::logic_error("PriorFromCovariance: the covariance is not positive definite");
   }
-  Prior prior;
-  prior.linearized = {T_WB};
-  prior.jacobian = llt.matrixL().solve(Matrix6d::Identity());
-  prior.residual = Eigen::VectorXd::Zero(6);
-  return prior;
+  return llt.matrixL().solve(Eigen::Matrix<double, kSize, kSize>::Identity());
+}
+
+}  // namespace
+
+Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance) {
+  return {.linearized = {T_WB},
+          .motion = {},
+          .jacobian = RootInformation<6>(covariance),
+          .residual = Eigen::VectorXd::Zero(6)};
+}
+
+Prior PriorFromCovariance(const Pose& T_WB, const Motion& motion, const Matrix15d& covariance) {
+  return {.linearized = {T_WB},
+          .motion = motion,
+          .jacobian = RootInformation<15>(covariance),
+          .residual = Eigen::VectorXd::Zero(15)};
+}
+
+Eigen::Matrix<double, 9, 1> Difference(const Motion& motion, const Motion& reference) {
+  Eigen::Matrix<double, 9, 1> d;
+  d << motion.v_WI - reference.v_WI, motion.gyro_bias - reference.gyro_bias,
+      motion.accel_bias - reference.accel_bias;
+  return d;
 }
 
 }  // namespace polnav::nav

@@ -30,12 +30,14 @@ struct LevelResidual {
 // Jacobian of Log(Exp(dtheta) q q0^-1) by dtheta at zero, for theta = Log(q q0^-1).
 [[nodiscard]] Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& theta);
 
-// What a vehicle that nothing is seen from may do besides going on as before: a car brakes by
-// about 1 m/s and turns in by about 3 deg/s before anybody would call it a surprise.
-inline constexpr double kCoastSpeedSigma_m_s = 1.0;
-inline constexpr double kCoastRateSigma_rad_s = 0.05;
-
 // A window of one pose that is known to this covariance of (dp, dtheta) in W.
 [[nodiscard]] Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance);
+
+// The same with its motion: (dp, dtheta, dv, dgyro_bias, daccel_bias).
+[[nodiscard]] Prior PriorFromCovariance(const Pose& T_WB, const Motion& motion,
+                                        const Matrix15d& covariance);
+
+// motion - reference, as the graph's vector.
+[[nodiscard]] Eigen::Matrix<double, 9, 1> Difference(const Motion& motion, const Motion& reference);
 
 }  // namespace polnav::nav

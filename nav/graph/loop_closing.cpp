@@ -23,11 +23,18 @@ RelativeEdge FollowedStep(const PoseGraphOptions& options, const Pose& T_ft) {
           .length_m = way};
 }
 
-// Sigmas of a step that was coasted.
-RelativeEdge CoastedStep(const Pose& T_ft, double dt) {
-  return {.T_ft = T_ft,
-          .position_sigma_m = kCoastSpeedSigma_m_s * dt,
-          .angle_sigma_rad = kCoastRateSigma_rad_s * dt};
+RelativeEdge CoastedStep(const Pose& T_ft, const CoastSigmas& sigmas) {
+  return {.T_ft = T_ft, .position_sigma_m = sigmas.position_m, .angle_sigma_rad = sigmas.angle_rad};
+}
+
+// The level that the IMU keeps errs slowly, with its bias: keyframes close together share most of
+// the error, and each counts for its share of this time.
+constexpr double kLevelTime_s = 30.0;
+
+LevelEdge LevelOf(const Keyframe& keyframe, const Matrix6d& covariance, double since_s) {
+  const double share = std::max(1.0, kLevelTime_s / std::max(since_s, 1e-3));
+  return {.up_B = keyframe.T_WB.q.conjugate() * Eigen::Vector3d::UnitZ(),
+          .sigma_rad = std::sqrt(share * covariance.diagonal().segment<2>(3).maxCoeff())};
 }
 
 Pose StepCorrected(const RelativeEdge& step, const Vector6d& drift) {
@@ -41,10 +48,11 @@ LoopCloser::LoopCloser(const LoopOptions& options, const Prior& start)
     : options_(options), graph_{.start = start}, places_(options.places) {}
 
 void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
-                     const StereoFeatures& features, const PoseSolverOptions& solver,
-                     Report& report) {
+                     const Matrix6d& covariance, const StereoFeatures& features,
+                     const PoseSolverOptions& solver, Report& report) {
   RefreshSteps(window);
-  AddNode(window.keyframes.back(), window.keyframes.size() > 1);
+  AddNode(window.keyframes.back());
+  if (window.inertial) LevelNewest(window.keyframes.back(), covariance);
   if (const auto seen = places_.Recognize(camera, graph_.nodes, features, solver)) {
     graph_.returns.push_back(*seen);
     report.returns = 1;
@@ -57,8 +65,7 @@ void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
   places_.Remember(camera, graph_.nodes, features);
 }
 
-// connected: the keyframe before is in the same window.
-void LoopCloser::AddNode(const Keyframe& keyframe, bool connected) {
+void LoopCloser::AddNode(const Keyframe& keyframe) {
   if (keyframe.id != graph_.nodes.size()) {
     throw std::logic_error("LoopCloser: a keyframe is missing");
   }
@@ -66,12 +73,12 @@ void LoopCloser::AddNode(const Keyframe& keyframe, bool connected) {
                  .stamp = keyframe.stamp,
                  .T_WB = keyframe.T_WB,
                  .heading = keyframe.heading,
-                 .level = keyframe.level};
+                 .level = {}};
   if (!graph_.nodes.empty()) {
     const GraphNode& before = graph_.nodes.back();
     const Pose T_ft = newest_T_OB_.Inverse() * keyframe.T_WB;
-    RelativeEdge step = connected ? FollowedStep(options_.graph, T_ft)
-                                  : CoastedStep(T_ft, ToSeconds(keyframe.stamp - before.stamp));
+    RelativeEdge step = keyframe.coasted ? CoastedStep(T_ft, *keyframe.coasted)
+                                         : FollowedStep(options_.graph, T_ft);
     step.from = graph_.nodes.size() - 1;
     step.to = graph_.nodes.size();
     node.T_WB = before.T_WB * StepCorrected(step, graph_.drift);
@@ -82,6 +89,13 @@ void LoopCloser::AddNode(const Keyframe& keyframe, bool connected) {
   }
   graph_.nodes.push_back(node);
   newest_T_OB_ = keyframe.T_WB;
+}
+
+void LoopCloser::LevelNewest(const Keyframe& keyframe, const Matrix6d& covariance) {
+  const std::size_t nodes = graph_.nodes.size();
+  const double since_s =
+      nodes < 2 ? kLevelTime_s : ToSeconds(keyframe.stamp - graph_.nodes[nodes - 2].stamp);
+  graph_.nodes.back().level = LevelOf(keyframe, covariance, since_s);
 }
 
 // Adjusted again, the window knows its steps better than when they were made.

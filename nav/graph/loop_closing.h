@@ -30,10 +30,10 @@ class LoopCloser {
   // start: on the first keyframe.
   LoopCloser(const LoopOptions& options, const Prior& start);
 
-  // The window's newest keyframe, just adjusted, and what it sees. Every keyframe must come.
-  // Tells `report` of a return, and of an optimization that failed.
-  void Add(const RectifiedCamera& camera, const Window& window, const StereoFeatures& features,
-           const PoseSolverOptions& solver, Report& report);
+  // The window's newest keyframe, just adjusted, how sure the window is of it, and what it sees.
+  // Every keyframe must come. Tells `report` of a return, and of an optimization that failed.
+  void Add(const RectifiedCamera& camera, const Window& window, const Matrix6d& covariance,
+           const StereoFeatures& features, const PoseSolverOptions& solver, Report& report);
 
   [[nodiscard]] Pose InWorld(const Pose& T_OB) const { return T_WO_ * T_OB; }
 
@@ -43,7 +43,8 @@ class LoopCloser {
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
 
  private:
-  void AddNode(const Keyframe& keyframe, bool connected);
+  void AddNode(const Keyframe& keyframe);
+  void LevelNewest(const Keyframe& keyframe, const Matrix6d& covariance);
   void RefreshSteps(const Window& window);
   void Optimize(Report& report);
 

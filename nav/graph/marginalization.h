@@ -19,9 +19,10 @@ namespace polnav::nav {
 void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
                        Window& window);
 
-// Covariance of the newest keyframe's (dp, dtheta) in W.
-[[nodiscard]] Matrix6d NewestCovariance(const RectifiedCamera& camera,
-                                        const BundleAdjustmentOptions& options,
-                                        const Window& window);
+// Covariance of the newest keyframe's (dp, dtheta, dv, dgyro_bias, daccel_bias) in W; of a window
+// without an IMU only the first six are there, the rest is zero.
+[[nodiscard]] Matrix15d NewestCovariance(const RectifiedCamera& camera,
+                                         const BundleAdjustmentOptions& options,
+                                         const Window& window);
 
 }  // namespace polnav::nav

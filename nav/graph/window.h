@@ -1,9 +1,9 @@
 // What does the sliding window hold?
 //
-// The graph of [Chu2021, eqs 13-16]: vertices are keyframe poses and landmarks; edges are stereo
-// reprojections (e1-e3), headings from polarization (e4), the accelerometer's level, and the prior
-// that marginalization leaves of what has slid out. Plain data; bundle_adjustment.h and
-// marginalization.h work on it.
+// The graph of [Chu2021, eqs 13-16]: vertices are keyframe poses and landmarks, with an IMU also
+// velocities and biases; edges are stereo reprojections (e1-e3), polarization (e4), the IMU's sums
+// from one keyframe to the next, and the prior that marginalization leaves of what has slid out.
+// Plain data; bundle_adjustment.h and marginalization.h work on it.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,6 +15,7 @@
 
 #include "nav/api/geometry.h"
 #include "nav/api/time.h"
+#include "nav/inertial/inertial_edge.h"
 #include "nav/stereo/reprojection.h"
 
 namespace polnav::nav {
@@ -25,10 +26,22 @@ struct HeadingEdge {
   double sigma_rad = 0.0;
 };
 
-// "Up" in B, unit vector, from the accelerometer (nav/stereo/levelling.h).
+// "Up" in B, unit vector: what the accelerometer knows of an attitude.
 struct LevelEdge {
   Eigen::Vector3d up_B = Eigen::Vector3d::UnitZ();
   double sigma_rad = 0.0;
+};
+
+// What is known of a keyframe's motion where no readings connect it to the one before.
+struct MotionPrior {
+  Motion mean;
+  Eigen::Vector3d sigmas;  // of velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]
+};
+
+// How far the step from the keyframe before may be off when vision did not follow it.
+struct CoastSigmas {
+  double position_m = 0.0;
+  double angle_rad = 0.0;
 };
 
 struct Keyframe {
@@ -36,7 +49,11 @@ struct Keyframe {
   TimeNs stamp = 0;
   Pose T_WB;
   std::optional<HeadingEdge> heading;
-  std::optional<LevelEdge> level;
+  std::optional<CoastSigmas> coasted;
+  // With an IMU; not on the window's first keyframe, whose past is the window's prior.
+  Motion motion;
+  std::optional<InertialEdge> inertial;  // from the keyframe before
+  std::optional<MotionPrior> motion_prior;
 };
 
 struct Sighting {
@@ -51,14 +68,17 @@ struct Landmark {
 };
 
 // 1/2 | residual + jacobian * delta |^2 where delta stacks Difference(pose, linearized) of the
-// first keyframes of the window, in their order.
+// first keyframes of the window, in their order, and then, with an IMU, the first one's motion
+// minus where it is linearized.
 struct Prior {
   std::vector<Pose> linearized;
+  std::optional<Motion> motion;
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;
 };
 
 struct Window {
+  bool inertial = false;                        // the rig has an IMU: motions are estimated
   std::deque<Keyframe> keyframes;               // oldest first
   std::map<std::uint64_t, Landmark> landmarks;  // by track id: ordered, so that sums are too
   Prior prior;

@@ -1,5 +1,6 @@
 #include "nav/stereo/estimator.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
 
@@ -10,6 +11,14 @@
 namespace polnav::nav {
 namespace {
 
+// What a vehicle that nothing is seen from may do besides going on as before: a car brakes by
+// about 1 m/s and turns in by about 3 deg/s before anybody would call it a surprise.
+constexpr double kCoastSpeedSigma_m_s = 1.0;
+constexpr double kCoastRateSigma_rad_s = 0.05;
+
+constexpr std::size_t kFirstKeyframes = 4;
+constexpr double kFirstKeyframeInterval_s = 0.25;
+
 Matrix6d StartCovariance(const StartPrior& start) {
   Eigen::Matrix<double, 6, 1> sigmas;
   sigmas << Eigen::Vector3d::Constant(start.position_sigma_m),
@@ -18,39 +27,43 @@ Matrix6d StartCovariance(const StartPrior& start) {
 }
 
 // What constant velocity misses within dt, of (dp, dtheta).
-Eigen::Matrix<double, 6, 1> MotionSigmas(double dt_s) {
+Matrix6d MotionCovariance(double dt_s) {
   Eigen::Matrix<double, 6, 1> sigmas;
   sigmas << Eigen::Vector3d::Constant(kCoastSpeedSigma_m_s * dt_s),
       Eigen::Vector3d::Constant(kCoastRateSigma_rad_s * dt_s);
-  return sigmas;
+  return sigmas.cwiseAbs2().asDiagonal();
+}
+
+CoastSigmas SigmasOf(const Matrix6d& covariance) {
+  return {std::sqrt(covariance.diagonal().head<3>().maxCoeff()),
+          std::sqrt(covariance.diagonal().tail<3>().maxCoeff())};
 }
 
 }  // namespace
 
 StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
-                                 const StartPrior& start, std::optional<HeadingFusion> polarization,
-                                 bool close_loops)
+                                 const std::optional<ImuCalibration>& imu, const StartPrior& start,
+                                 std::optional<HeadingFusion> polarization, bool close_loops)
     : options_(options),
       camera_(StereoRectifier(calibration).camera()),
-      start_(start),
       adjustment_{.sigmas = {options.pixel_sigma_px, options.disparity_sigma_px},
                   .max_iterations = options.max_iterations},
       solver_{.sigmas = adjustment_.sigmas, .inlier_sigmas = options.inlier_sigmas},
       polarization_(std::move(polarization)),
-      levelling_(options.levelling),
       T_WB_{LevelAttitude(start.heading_rad), start.p_WB_m},
       covariance_(StartCovariance(start)) {
+  if (imu && options.use_imu) imu_.emplace(*imu, options.inertial);
   if (close_loops) loops_.emplace(options.loops, PriorFromCovariance(T_WB_, covariance_));
+  window_.inertial = imu_.has_value();
+  if (imu_) state_covariance_.bottomRightCorner<9, 9>() = imu_->StartCovariance();
 }
 
 Report StereoEstimator::Process(const Measurement& measurement) {
   if (const auto* features = std::get_if<StereoFeatures>(&measurement)) {
     return ProcessFeatures(*features);
   }
-  if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
-    levelling_.Add(*sample);
-    return {.outcome = Outcome::kUsed};
-  }
+  const auto* sample = std::get_if<ImuSample>(&measurement);
+  if (sample != nullptr && imu_) return {.outcome = imu_->Add(*sample)};
   const auto* light = std::get_if<PolarizationSample>(&measurement);
   if (light != nullptr && polarization_) return {.outcome = polarization_->Add(*light)};
   return {};
@@ -58,25 +71,19 @@ Report StereoEstimator::Process(const Measurement& measurement) {
 
 Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   Report report{.outcome = Outcome::kUsed, .features = static_cast<int>(features.features.size())};
-  if (!window_.keyframes.empty() && features.stamp <= stamp_) {  // late, or the same once more
+  const bool starting = window_.keyframes.empty();
+  if (!starting && features.stamp <= stamp_) {  // late, or the same once more
     report.outcome = Outcome::kUnusable;
     return report;
   }
-  const TimeNs before = window_.keyframes.empty() ? features.stamp : stamp_;
+  const TimeNs before = starting ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
-  const Pose expected = PredictPose(features.stamp);
+  const Expectation expected = Expect(features.stamp);
   const std::vector<LandmarkView> views = RejectMoving(MatchLandmarks(features), expected, report);
-  const bool starting = window_.keyframes.empty();
-  std::optional<PosePrior> prior;
-  if (step_ > 0) prior = {expected, MotionSigmas(ToSeconds(features.stamp - stamp_))};
-  const auto solution = SolvePose(camera_, views, expected, solver_, options_.min_inliers, prior);
-  if (solution) {
-    Follow(*solution, views);
-    levelling_.AddMotion(features.stamp, motion_);
-  } else {
-    if (!starting) Coast(expected, features.stamp);
-    levelling_.Interrupt();
-  }
+  const auto solution = SolvePose(camera_, views, expected.pose.T_WB, solver_, options_.min_inliers,
+                                  step_ > 0 ? std::optional(expected.pose) : std::nullopt);
+  if (solution) Follow(*solution, expected, views);
+  if (!solution && !starting) Coast(expected);
   step_ = features.stamp - before;
   stamp_ = features.stamp;
   if (polarization_) {
@@ -84,16 +91,14 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
         polarization_->Advance(before, q_before, stamp_, T_WB_.q, covariance_(5, 5));
   }
   report.inliers = solution ? solution->inliers : 0;
-  if (!solution) {
-    report.outcome = starting ? Outcome::kUsed : Outcome::kUnusable;
-    Restart(features, report);
-    report.keyframes = 1;
-  } else if (NeedsKeyframe(report.inliers)) {
-    AddKeyframe(features, views);
-    OptimizeWindow(report);
-    if (loops_) loops_->Add(camera_, window_, features, solver_, report);
-    report.keyframes = 1;
+  if (!solution || NeedsKeyframe(report.inliers)) {
+    if (!solution && !expected.by_imu) Begin(covariance_);
+    std::optional<CoastSigmas> coasted;
+    if (!solution) coasted = SigmasOf(expected.pose.covariance);
+    AddKeyframe(features, solution ? views : std::vector<LandmarkView>{}, coasted);
+    OptimizeWindow(features, report);
   }
+  if (!solution && !starting) report.outcome = Outcome::kUnusable;
   ForgetRejected(features);
   report.estimate = Answer(solution.has_value() || starting);
   return report;
@@ -103,16 +108,28 @@ Estimate StereoEstimator::Answer(bool tracked) const {
   Estimate estimate{.stamp = stamp_, .T_WB = T_WB_, .covariance = covariance_, .tracked = tracked};
   if (loops_) {
     estimate.T_WB = loops_->InWorld(T_WB_);
-    estimate.covariance = loops_->covariance() + covariance_ - keyframe_covariance_;
+    estimate.covariance =
+        loops_->covariance() + covariance_ - state_covariance_.topLeftCorner<6, 6>();
   }
   return estimate;
 }
 
-Pose StereoEstimator::PredictPose(TimeNs stamp) const {
-  if (step_ <= 0) return T_WB_;
-  const double ratio = ToSeconds(stamp - stamp_) / ToSeconds(step_);
+// By the IMU; without, on as before.
+StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
+  if (window_.keyframes.empty()) return {.pose = {T_WB_, covariance_}};
+  const double dt = ToSeconds(stamp - stamp_);
+  if (imu_) {
+    imu_->Advance(stamp);
+    if (const auto p = imu_->Predict(window_.keyframes.back(), state_covariance_)) {
+      const Matrix6d pose = p->covariance.topLeftCorner<6, 6>();
+      const Eigen::Matrix<double, 3, 6> by_pose =
+          Eigen::LDLT<Matrix6d>(pose).solve(p->covariance.topRightCorner<6, 3>()).transpose();
+      return {.pose = {p->T_WB, pose}, .by_imu = true, .v_WI = p->v_WI, .v_by_pose = by_pose};
+    }
+  }
+  const double ratio = step_ > 0 ? dt / ToSeconds(step_) : 0.0;
   const Pose motion{ExpRotation(ratio * LogRotation(motion_.q)), ratio * motion_.p};
-  return T_WB_ * motion;
+  return {.pose = {T_WB_ * motion, MotionCovariance(dt)}};
 }
 
 std::vector<LandmarkView> StereoEstimator::MatchLandmarks(const StereoFeatures& features) const {
@@ -130,9 +147,12 @@ std::vector<LandmarkView> StereoEstimator::MatchLandmarks(const StereoFeatures& 
 }
 
 std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<LandmarkView>& views,
-                                                        const Pose& expected, Report& report) {
+                                                        const Expectation& expected,
+                                                        Report& report) {
   const std::vector<bool> verdicts =
-      MovesWithScene(camera_, views, T_WB_, expected, options_.flow_threshold_px);
+      expected.by_imu
+          ? MovesAsPredicted(camera_, views, expected.pose, adjustment_.sigmas)
+          : MovesWithScene(camera_, views, T_WB_, expected.pose.T_WB, options_.flow_threshold_px);
   std::vector<LandmarkView> kept;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (verdicts[i]) kept.push_back(views[i]);
@@ -142,10 +162,14 @@ std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<Landma
 }
 
 // Takes over the solved pose; what it disagrees with does not come back.
-void StereoEstimator::Follow(const PoseSolution& solution, const std::vector<LandmarkView>& views) {
+void StereoEstimator::Follow(const PoseSolution& solution, const Expectation& expected,
+                             const std::vector<LandmarkView>& views) {
   motion_ = T_WB_.Inverse() * solution.T_WB;
+  v_WI_ = expected.by_imu
+              ? expected.v_WI + expected.v_by_pose * Difference(solution.T_WB, expected.pose.T_WB)
+              : v_WI_;
   T_WB_ = solution.T_WB;
-  covariance_ = keyframe_covariance_ + solution.covariance;
+  covariance_ = state_covariance_.topLeftCorner<6, 6>() + solution.covariance;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!solution.inlier[i]) {
       rejected_.insert(views[i].id);
@@ -154,28 +178,36 @@ void StereoEstimator::Follow(const PoseSolution& solution, const std::vector<Lan
   }
 }
 
-void StereoEstimator::Coast(const Pose& expected, TimeNs stamp) {
-  const double dt = ToSeconds(stamp - stamp_);
-  T_WB_ = expected;
-  const auto sigmas = MotionSigmas(dt);
-  covariance_ += Matrix6d(sigmas.cwiseAbs2().asDiagonal());
+void StereoEstimator::Coast(const Expectation& expected) {
+  T_WB_ = expected.pose.T_WB;
+  v_WI_ = expected.by_imu ? expected.v_WI : v_WI_;
+  covariance_ += expected.pose.covariance;
 }
 
 bool StereoEstimator::NeedsKeyframe(int inliers) const {
-  const Pose& last = window_.keyframes.back().T_WB;
-  return levelling_.FirstIsDue() || (T_WB_.p - last.p).norm() > options_.keyframe_distance_m ||
-         T_WB_.q.angularDistance(last.q) > DegToRad(options_.keyframe_angle_deg) ||
+  const Keyframe& last = window_.keyframes.back();
+  // Velocity and level take a few keyframes to tell apart: a new window does not wait for them.
+  const double most_s = window_.keyframes.size() < kFirstKeyframes
+                            ? kFirstKeyframeInterval_s
+                            : options_.inertial.keyframe_interval_s;
+  const bool old = imu_ && stamp_ - last.stamp >= FromSeconds(most_s);
+  return old || (T_WB_.p - last.T_WB.p).norm() > options_.keyframe_distance_m ||
+         T_WB_.q.angularDistance(last.T_WB.q) > DegToRad(options_.keyframe_angle_deg) ||
          inliers < options_.keyframe_overlap * keyframe_views_;
 }
 
 // The newest frame joins the window with what it sees of old landmarks and with new ones.
 void StereoEstimator::AddKeyframe(const StereoFeatures& features,
-                                  const std::vector<LandmarkView>& seen) {
-  Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_};
-  const bool first_levelling = levelling_.FirstIsDue();
-  keyframe.level = levelling_.TakeEdge();
-  if (first_levelling && polarization_) polarization_->Forget();  // taken with a guessed tilt
+                                  const std::vector<LandmarkView>& seen,
+                                  const std::optional<CoastSigmas>& coasted) {
+  Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_, .coasted = coasted};
   if (polarization_) keyframe.heading = polarization_->TakeEdge(stamp_, T_WB_.q);
+  if (imu_ && !window_.keyframes.empty()) {
+    const Motion& before = window_.keyframes.back().motion;
+    keyframe.motion = before;
+    keyframe.motion.v_WI = v_WI_;
+    imu_->Connect(before, state_covariance_, keyframe);
+  }
   window_.keyframes.push_back(keyframe);
   std::set<std::uint64_t> trusted;
   for (const LandmarkView& view : seen) trusted.insert(view.id);
@@ -197,27 +229,41 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
   }
 }
 
-void StereoEstimator::OptimizeWindow(Report& report) {
+void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& report) {
+  report.keyframes = 1;
   if (!AdjustBundle(camera_, adjustment_, window_).usable) ++report.failed_solves;
   for (const std::uint64_t id :
        RemoveOutliers(camera_, adjustment_.sigmas, options_.inlier_sigmas, window_)) {
     rejected_.insert(id);
   }
   // motion_ stays: a correction of the whole window is not a motion of the vehicle.
-  T_WB_ = window_.keyframes.back().T_WB;
-  keyframe_covariance_ = NewestCovariance(camera_, adjustment_, window_);
-  covariance_ = keyframe_covariance_;
-  if (static_cast<int>(window_.keyframes.size()) <= options_.window_keyframes) return;
-  MarginalizeOldest(camera_, adjustment_, window_);
+  const Keyframe& newest = window_.keyframes.back();
+  T_WB_ = newest.T_WB;
+  v_WI_ = newest.motion.v_WI;
+  state_covariance_ = NewestCovariance(camera_, adjustment_, window_);
+  covariance_ = state_covariance_.topLeftCorner<6, 6>();
+  if (imu_) imu_->Begin(stamp_, newest.motion);
+  if (static_cast<int>(window_.keyframes.size()) > options_.window_keyframes) {
+    MarginalizeOldest(camera_, adjustment_, window_);
+  }
+  if (loops_) loops_->Add(camera_, window_, covariance_, features, solver_, report);
 }
 
-// Begins a new window at the current pose: at the start, and when sight of the old one is lost.
-void StereoEstimator::Restart(const StereoFeatures& features, Report& report) {
-  window_ = {};
-  window_.prior = PriorFromCovariance(T_WB_, covariance_);
-  keyframe_covariance_ = covariance_;
-  AddKeyframe(features, {});
-  if (loops_) loops_->Add(camera_, window_, features, solver_, report);
+// A new window at the current pose: at the start, and when the thread to the old one is lost.
+void StereoEstimator::Begin(const Matrix6d& covariance) {
+  const Motion motion = window_.keyframes.empty() ? Motion{} : window_.keyframes.back().motion;
+  window_.keyframes.clear();
+  window_.landmarks.clear();
+  if (!imu_) {
+    window_.prior = PriorFromCovariance(T_WB_, covariance);
+    return;
+  }
+  // What the biases are is known as before; the velocity is not.
+  Matrix15d state = Matrix15d::Zero();
+  state.topLeftCorner<6, 6>() = covariance;
+  state.bottomRightCorner<9, 9>() = imu_->StartCovariance();
+  state.bottomRightCorner<6, 6>() = state_covariance_.bottomRightCorner<6, 6>();
+  window_.prior = PriorFromCovariance(T_WB_, motion, state);
 }
 
 // Track ids are never used again once lost, so only those still seen need to be remembered.

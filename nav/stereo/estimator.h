@@ -2,12 +2,14 @@
 //
 // Stereo visual odometry over a sliding window [Chu2021, section 2]: flow rejection, pose,
 // keyframe, bundle adjustment, marginalization; with a polarimeter given, its headings are edges of
-// the same graph; with an IMU in the rig, its accelerometer keeps pitch and roll from drifting.
+// the same graph; with an IMU in the rig, its readings between keyframes are edges too: they
+// predict each frame, tell moving objects from the scene, carry the estimate through darkness, and
+// keep pitch and roll from drifting.
 // Both of the paper's estimators are this class:
 //   stereo               no polarization
 //   stereo_polarization  with it
-// Starts from what the scenario grants. Fails where no texture is seen for long: it then coasts at
-// constant velocity and says so.
+// Starts from what the scenario grants. Where nothing is seen it coasts, on the IMU or at constant
+// velocity, and says so.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +23,8 @@
 #include "nav/graph/bundle_adjustment.h"
 #include "nav/graph/loop_closing.h"
 #include "nav/graph/window.h"
+#include "nav/inertial/imu_track.h"
 #include "nav/polarization/heading_fusion.h"
-#include "nav/stereo/levelling.h"
 #include "nav/stereo/options.h"
 #include "nav/stereo/pose_solver.h"
 #include "nav/stereo/rectifier.h"
@@ -33,37 +35,46 @@ class StereoEstimator {
  public:
   // close_loops: places seen again correct the whole drive; needs features with descriptors.
   StereoEstimator(const StereoOptions& options, const StereoCalibration& calibration,
-                  const StartPrior& start, std::optional<HeadingFusion> polarization,
-                  bool close_loops = false);
+                  const std::optional<ImuCalibration>& imu, const StartPrior& start,
+                  std::optional<HeadingFusion> polarization, bool close_loops = false);
 
   [[nodiscard]] Report Process(const Measurement& measurement);
 
  private:
+  // Where the newest frame is expected, before anything in it is looked at.
+  struct Expectation {
+    PosePrior pose;
+    bool by_imu = false;
+    Eigen::Vector3d v_WI = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 3, 6> v_by_pose = Eigen::Matrix<double, 3, 6>::Zero();
+  };
+
   [[nodiscard]] Report ProcessFeatures(const StereoFeatures& features);
-  [[nodiscard]] Pose PredictPose(TimeNs stamp) const;
+  [[nodiscard]] Expectation Expect(TimeNs stamp);
   [[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const StereoFeatures& features) const;
   [[nodiscard]] std::vector<LandmarkView> RejectMoving(const std::vector<LandmarkView>& views,
-                                                       const Pose& expected, Report& report);
-  void Follow(const PoseSolution& solution, const std::vector<LandmarkView>& views);
-  void Coast(const Pose& expected, TimeNs stamp);
+                                                       const Expectation& expected, Report& report);
+  void Follow(const PoseSolution& solution, const Expectation& expected,
+              const std::vector<LandmarkView>& views);
+  void Coast(const Expectation& expected);
   [[nodiscard]] bool NeedsKeyframe(int inliers) const;
-  void AddKeyframe(const StereoFeatures& features, const std::vector<LandmarkView>& seen);
-  void OptimizeWindow(Report& report);
+  void AddKeyframe(const StereoFeatures& features, const std::vector<LandmarkView>& seen,
+                   const std::optional<CoastSigmas>& coasted);
+  void OptimizeWindow(const StereoFeatures& features, Report& report);
   [[nodiscard]] Estimate Answer(bool tracked) const;
-  void Restart(const StereoFeatures& features, Report& report);
+  void Begin(const Matrix6d& covariance);
   void ForgetRejected(const StereoFeatures& features);
 
   StereoOptions options_;
   RectifiedCamera camera_;
-  StartPrior start_;
   BundleAdjustmentOptions adjustment_;
   PoseSolverOptions solver_;
   std::optional<HeadingFusion> polarization_;
-  Levelling levelling_;
+  std::optional<ImuTrack> imu_;
   std::optional<LoopCloser> loops_;
 
   Window window_;
-  Matrix6d keyframe_covariance_ = Matrix6d::Zero();
+  Matrix15d state_covariance_ = Matrix15d::Zero();  // of the newest keyframe
   int keyframe_views_ = 0;
   std::uint64_t next_keyframe_ = 0;
   std::set<std::uint64_t> rejected_;  // tracks that do not belong to the static scene
@@ -72,6 +83,7 @@ class StereoEstimator {
   TimeNs step_ = 0;   // between the newest two
   Pose T_WB_;         // at the newest frame; in O once loops are closed, see loop_closing.h
   Pose motion_;       // T_BpB from the frame before to the newest one
+  Eigen::Vector3d v_WI_ = Eigen::Vector3d::Zero();  // at the newest frame, with an IMU
   Matrix6d covariance_ = Matrix6d::Zero();
 };
 

@@ -1,5 +1,6 @@
 #include "nav/stereo/flow_rejection.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,9 @@ namespace {
 
 // Share of the predicted displacement by which a change of speed within one frame can miss it.
 constexpr double kSpeedShare = 0.25;
+
+// Chi-square with three degrees of freedom: 0.1 % of a static scene's features are beyond.
+constexpr double kGate2 = 16.3;
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -22,6 +26,24 @@ struct Departure {
 };
 
 }  // namespace
+
+std::vector<bool> MovesAsPredicted(const RectifiedCamera& camera,
+                                   const std::vector<LandmarkView>& views,
+                                   const PosePrior& expected, const PixelSigmas& sigmas) {
+  std::vector<bool> moves_with_scene;
+  for (const LandmarkView& view : views) {
+    const auto e = Reproject(camera, *view.T_WBh, expected.T_WB, view.landmark, view.pixel, sigmas);
+    if (!e) {
+      moves_with_scene.push_back(false);
+      continue;
+    }
+    const Eigen::Matrix3d covariance =
+        Eigen::Matrix3d::Identity() + e->by_target * expected.covariance * e->by_target.transpose();
+    const double distance2 = e->residual.dot(covariance.inverse() * e->residual);
+    moves_with_scene.push_back(distance2 <= kGate2);
+  }
+  return moves_with_scene;
+}
 
 std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
                                  const std::vector<LandmarkView>& views, const Pose& T_WB_before,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nav/graph/loop_closing.h"
-#include "nav/stereo/levelling.h"
+#include "nav/inertial/options.h"
 
 namespace polnav::nav {
 
@@ -49,20 +49,22 @@ struct TrackerOptions {
 
 struct StereoOptions {
   TrackerOptions tracker;
-  // Twice what tracking scatters by: its errors are alike from frame to frame and from point to
-  // point, and a larger sigma is how the window knows. Larger trusts vision less.
-  double pixel_sigma_px = 0.7;
-  double disparity_sigma_px = 0.6;
+  // Three times what tracking scatters by: its errors are alike from frame to frame and from point
+  // to point (patches on ground that comes nearer drift all one way), and a larger sigma is how the
+  // window knows. Larger trusts vision less.
+  double pixel_sigma_px = 1.0;
+  double disparity_sigma_px = 0.8;
   double flow_threshold_px = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
-  double inlier_sigmas = 2.0;      // departure from the solved pose that makes an outlier
+  double inlier_sigmas = 1.5;      // departure from the solved pose that makes an outlier
   int min_inliers = 12;            // fewer: the frame is not tracked, the estimate coasts
   int window_keyframes = 8;        // longer: less drift, slower (cost grows with its square)
   double keyframe_distance_m = 1.4;
   double keyframe_angle_deg = 4.0;
   double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
   int max_iterations = 6;         // of the bundle adjustment, a keyframe
-  LevellingOptions levelling;     // only with an IMU in the rig
-  LoopOptions loops;              // only where the estimator closes loops
+  bool use_imu = true;            // where the rig has one
+  InertialOptions inertial;
+  LoopOptions loops;  // only where the estimator closes loops
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -77,7 +79,8 @@ struct StereoOptions {
     v("keyframe_angle_deg", keyframe_angle_deg, {.min = 0.1, .max = 90.0});
     v("keyframe_overlap", keyframe_overlap, {.min = 0.0, .max = 1.0});
     v("max_iterations", max_iterations, {.min = 1, .max = 100});
-    v("levelling", levelling);
+    v("use_imu", use_imu);
+    v("inertial", inertial);
     v("loops", loops);
   }
 };

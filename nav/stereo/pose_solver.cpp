@@ -17,9 +17,8 @@ Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>&
                  const std::optional<PosePrior>& prior) {
   Normal n;
   if (prior) {
-    const Eigen::Matrix<double, 6, 1> information = prior->sigmas.cwiseAbs2().cwiseInverse();
-    n.H = information.asDiagonal();
-    n.g = information.cwiseProduct(Difference(T_WB, prior->T_WB));
+    n.H = Eigen::LDLT<Matrix6d>(prior->covariance).solve(Matrix6d::Identity());
+    n.g = n.H * Difference(T_WB, prior->T_WB);
   }
   for (const LandmarkView& view : views) {
     const auto e = Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);

@@ -27,10 +27,10 @@ struct PoseSolverOptions {
   int max_iterations = 10;
 };
 
-// What motion is known to be possible: the pose is this one, within sigmas of (dp, dtheta) in W.
+// What motion is known to be possible: covariance of (dp, dtheta) in W.
 struct PosePrior {
   Pose T_WB;
-  Eigen::Matrix<double, 6, 1> sigmas;
+  Matrix6d covariance;
 };
 
 struct PoseSolution {

@@ -16,7 +16,7 @@ struct Drive {
                    .heading_rad = 0.0,
                    .heading_sigma_rad = DegToRad(0.3),
                    .level_sigma_rad = DegToRad(0.3)};
-  StereoEstimator estimator{StereoOptions{}, TestCalibration(), start, std::nullopt};
+  StereoEstimator estimator{StereoOptions{}, TestCalibration(), std::nullopt, start, std::nullopt};
   Estimate last;
   double worst_m = 0.0;
 
@@ -94,35 +94,13 @@ TEST(StereoEstimator, PointsThatMoveTogetherAreLeftOut) {
   EXPECT_LT((report.estimate->T_WB.p - drive.street.PoseAt(0.6 * 30).p).norm(), 0.1);
 }
 
-TEST(StereoEstimator, AStandingStartIsLevelledByTheAccelerometer) {
-  Drive drive;
-  const Eigen::Quaterniond tilt =
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()));
-  const Pose truth{LevelAttitude(0.0) * tilt, Eigen::Vector3d::Zero()};
-  drive.start.level_sigma_rad = DegToRad(3.0);
-  StereoEstimator estimator(StereoOptions{}, TestCalibration(), drive.start, std::nullopt);
-  Estimate last;
-  for (int k = 0; k <= 150; ++k) {
-    ImuSample imu{.stamp = k * kNsPerSecond / 100};
-    imu.accel_m_s2 = truth.q.conjugate() * Eigen::Vector3d(0, 0, 9.80665);
-    (void)estimator.Process(imu);
-    if (k % 10 != 0) continue;
-    last = *estimator.Process(drive.street.See(truth, imu.stamp, 0.1)).estimate;
-  }
-  const Eigen::Vector3d up = last.T_WB.q.conjugate() * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d up_true = truth.q.conjugate() * Eigen::Vector3d::UnitZ();
-  // The edge's 0.41 degrees (vision's velocity over one second) against the prior's 3 leave a
-  // fiftieth of the 1.15 degrees; twice that for vision's noise.
-  EXPECT_LT((up - up_true).norm(), 0.02 * 0.04);
-}
-
 TEST(StereoEstimator, PolarizationPullsAWrongStartingHeadingBack) {
   const Eigen::Vector3d sun = Eigen::Vector3d(0.6, -0.7, 0.3).normalized();
   Drive drive;
   drive.start.heading_rad = DegToRad(2.0);
   drive.start.heading_sigma_rad = DegToRad(2.0);
   PolarizationOptions options{.reading_sigma_deg = 0.5, .correlated_sigma_deg = 0.0};
-  StereoEstimator estimator(StereoOptions{}, TestCalibration(), drive.start,
+  StereoEstimator estimator(StereoOptions{}, TestCalibration(), std::nullopt, drive.start,
                             HeadingFusion(options, {}, [&](TimeNs) { return sun; }));
   Estimate last;
   Pose truth;

@@ -133,9 +133,9 @@ TEST(BundleAdjustment, OutliersAreRemovedAndNothingElse) {
 TEST(Marginalization, KeepsTheNewestPosesCovariance) {
   StreetWindow s(6, 0.1);
   ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
-  const Matrix6d before = NewestCovariance(s.camera, s.options, s.window);
+  const Matrix15d before = NewestCovariance(s.camera, s.options, s.window);
   MarginalizeOldest(s.camera, s.options, s.window);
-  const Matrix6d after = NewestCovariance(s.camera, s.options, s.window);
+  const Matrix15d after = NewestCovariance(s.camera, s.options, s.window);
   EXPECT_LT((after - before).norm(), 1e-6 * before.norm());
 }
 

@@ -27,7 +27,7 @@ std::array<double, 3> WorstByLap(bool close_loops) {
                          .position_sigma_m = 0.01,
                          .heading_sigma_rad = DegToRad(0.3),
                          .level_sigma_rad = DegToRad(0.3)};
-  StereoEstimator estimator({}, believed, start, std::nullopt, close_loops);
+  StereoEstimator estimator({}, believed, std::nullopt, start, std::nullopt, close_loops);
   std::array<double, 3> worst{};
   for (int k = 0; k < 3 * kLapFrames; ++k) {
     const Pose truth = street.PoseAt(0.6 * k);
@@ -55,7 +55,7 @@ TEST(LoopCloser, AMissingKeyframeIsABrokenContract) {
   Window window;
   window.keyframes.push_back({.id = 1});
   Report report;
-  EXPECT_THROW(loops.Add({}, window, {}, {}, report), std::logic_error);
+  EXPECT_THROW(loops.Add({}, window, Matrix6d::Identity(), {}, {}, report), std::logic_error);
 }
 
 }  // namespace

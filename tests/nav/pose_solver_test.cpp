@@ -53,7 +53,7 @@ class PoseSolverTest : public ::testing::Test {
 // 3 (sigma_views / sigma_prior)^2 of its sigmas.
 TEST_F(PoseSolverTest, ManyViewsOverruleThePrior) {
   const auto views = Views(150, 8.0);
-  const PosePrior prior{Perturb(truth_, 3.0 * sigmas_), sigmas_};
+  const PosePrior prior{Perturb(truth_, 3.0 * sigmas_), sigmas_.cwiseAbs2().asDiagonal()};
   const auto solution = SolvePose(camera_, views, prior.T_WB, options_, 12, prior);
   ASSERT_TRUE(solution);
   EXPECT_GT(solution->inliers, 140);
@@ -69,7 +69,7 @@ TEST_F(PoseSolverTest, ManyViewsOverruleThePrior) {
 TEST_F(PoseSolverTest, FewFarViewsLeaveThePlaceToThePrior) {
   const auto views = Views(12, 90.0);
   const auto alone = SolvePose(camera_, views, truth_, options_, 8);
-  const PosePrior prior{Perturb(truth_, 0.5 * sigmas_), sigmas_};
+  const PosePrior prior{Perturb(truth_, 0.5 * sigmas_), sigmas_.cwiseAbs2().asDiagonal()};
   const auto with_prior = SolvePose(camera_, views, truth_, options_, 8, prior);
   EXPECT_GT(ErrorOf(alone), 0.2);
   EXPECT_LT(ErrorOf(with_prior), 0.15);

@@ -36,7 +36,7 @@ AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario, co
     polarization.emplace(scenario.estimators.polarization, rig.polarimeter.value(),
                          SunFor(scenario.site));
   }
-  return nav::StereoEstimator(scenario.estimators.stereo, rig.stereo.value(), start,
+  return nav::StereoEstimator(scenario.estimators.stereo, rig.stereo.value(), rig.imu, start,
                               std::move(polarization), ClosesLoops(scenario, name));
 }
 
