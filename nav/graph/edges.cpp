@@ -23,6 +23,12 @@ HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB) {
   const Eigen::RowVector3d by_x(x_W.y() / horizontal2, -x_W.x() / horizontal2, 0.0);
   r.by_pose.setZero();
   r.by_pose.tail<3>() = by_x * Skew(x_W) / edge.sigma_rad;
+  if (!edge.by_tilt.isZero()) {
+    const Eigen::Vector3d turn = LogRotation(T_WB.q * edge.q_WB.conjugate());
+    const Eigen::RowVector2d by_tilt = edge.by_tilt.transpose() / edge.sigma_rad;
+    r.residual += by_tilt * turn.head<2>();
+    r.by_pose.tail<3>() += by_tilt * InverseLeftJacobian(turn).topRows<2>();
+  }
   return r;
 }
 

@@ -15,7 +15,7 @@ struct HeadingResidual {
   Eigen::Matrix<double, 1, 6> by_pose;
 };
 
-// e4 = p_i - psi_i [Chu2021, eq. 15], wrapped. Blind to pitch and roll of a level vehicle.
+// e4 = p_i - psi_i [Chu2021, eq. 15], wrapped, and what a tilt makes of p_i.
 [[nodiscard]] HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB);
 
 struct LevelResidual {

@@ -69,25 +69,25 @@ void LoopCloser::AddNode(const Keyframe& keyframe) {
   if (keyframe.id != graph_.nodes.size()) {
     throw std::logic_error("LoopCloser: a keyframe is missing");
   }
-  GraphNode node{.keyframe = keyframe.id,
-                 .stamp = keyframe.stamp,
-                 .T_WB = keyframe.T_WB,
-                 .heading = keyframe.heading,
-                 .level = {}};
-  if (!graph_.nodes.empty()) {
-    const GraphNode& before = graph_.nodes.back();
+  graph_.nodes.emplace_back();
+  GraphNode& node = graph_.nodes.back();
+  node.keyframe = keyframe.id;
+  node.stamp = keyframe.stamp;
+  node.T_WB = keyframe.T_WB;
+  node.heading = keyframe.heading;
+  const std::size_t at = graph_.nodes.size() - 1;
+  if (at > 0) {
     const Pose T_ft = newest_T_OB_.Inverse() * keyframe.T_WB;
     RelativeEdge step = keyframe.coasted ? CoastedStep(T_ft, *keyframe.coasted)
                                          : FollowedStep(options_.graph, T_ft);
-    step.from = graph_.nodes.size() - 1;
-    step.to = graph_.nodes.size();
-    node.T_WB = before.T_WB * StepCorrected(step, graph_.drift);
+    step.from = at - 1;
+    step.to = at;
+    node.T_WB = graph_.nodes[at - 1].T_WB * StepCorrected(step, graph_.drift);
     way_m_ += T_ft.p.norm();
     covariance_.diagonal().head<3>().array() += step.position_sigma_m * step.position_sigma_m;
     covariance_.diagonal().tail<3>().array() += step.angle_sigma_rad * step.angle_sigma_rad;
     graph_.steps.push_back(step);
   }
-  graph_.nodes.push_back(node);
   newest_T_OB_ = keyframe.T_WB;
 }
 

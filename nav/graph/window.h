@@ -24,6 +24,10 @@ namespace polnav::nav {
 struct HeadingEdge {
   double heading_rad = 0.0;
   double sigma_rad = 0.0;
+  // The heading that the sky gives changes by this times a tilt about W's east and north, against
+  // the attitude that it was found with. Zero: the heading alone counts [Chu2021, eq. 15].
+  Eigen::Vector2d by_tilt = Eigen::Vector2d::Zero();
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
 };
 
 // "Up" in B, unit vector: what the accelerometer knows of an attitude.

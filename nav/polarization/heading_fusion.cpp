@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "nav/polarization/six_channel.h"
 #include "nav/polarization/sky_heading.h"
 
 namespace polnav::nav {
@@ -12,6 +11,15 @@ namespace {
 
 // The first edge carries the slow part's whole information: worth a second of readings.
 constexpr int kFirstReadings = 20;
+constexpr double kReferenceDop = 0.5;  // at which options' white part is stated
+// A clear sky is at least this much of the Rayleigh pattern of clear_dop: haze and cirrus vary.
+constexpr double kLeastClear = 0.8;
+
+// Variance of a heading by that of the attitude.
+double HeadingVariance(const Eigen::Vector2d& by_tilt, const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d by_attitude(by_tilt.x(), by_tilt.y(), 1.0);
+  return by_attitude.dot(covariance * by_attitude);
+}
 
 }  // namespace
 
@@ -20,21 +28,45 @@ HeadingFusion::HeadingFusion(const PolarizationOptions& options,
     : options_(options), calibration_(calibration), sun_(std::move(sun)) {}
 
 Outcome HeadingFusion::Add(const PolarizationSample& sample) {
-  const auto e_B = UsableEVector(sample, options_, calibration_);
-  if (!e_B) return Outcome::kUnusable;
+  const bool frozen = newest_ && sample.channel == newest_->channel;
+  newest_ = sample;
+  const auto light = UsableLight(sample, options_);
+  if (!light || frozen) return Outcome::kUnusable;
   const auto same = [&](const Reading& r) { return r.stamp == sample.stamp; };
   const bool late = advanced_to_ && sample.stamp < *advanced_to_;  // no attitude is kept for it
   if (late || std::any_of(waiting_.begin(), waiting_.end(), same)) return Outcome::kUnusable;
-  waiting_.push_back({sample.stamp, *e_B});
+  waiting_.push_back({sample.stamp, *light});
   return Outcome::kUsed;
 }
 
+// False: gated.
+bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
+                         const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d sun = sun_(reading.stamp);
+  const Eigen::Vector3d e_B = EVectorOf(reading.light, calibration_);
+  const auto heading = HeadingFromEVector(e_B, q_WB, sun);
+  if (!heading) return false;
+  const Eigen::Vector2d by_tilt = HeadingByTilt(q_WB * e_B, sun);
+  const Eigen::Vector3d look_W = q_WB * (calibration_.T_BS.q * Eigen::Vector3d::UnitZ());
+  const double clear = kLeastClear * RayleighDop(look_W, sun, options_.clear_dop);
+  const double foreign = std::max(0.0, clear / reading.light.dop - 1.0);
+  const double white = DegToRad(options_.reading_sigma_deg) * kReferenceDop / reading.light.dop;
+  const double slow =
+      DegToRad(std::hypot(options_.correlated_sigma_deg, options_.foreign_sigma_deg * foreign));
+  const double innovation = WrapPi(*heading - CompassHeading(q_WB));
+  const double variance = white * white + slow * slow + HeadingVariance(by_tilt, covariance);
+  if (std::abs(innovation) > options_.gate_sigmas * std::sqrt(variance)) return false;
+  const double weight = 1.0 / (white * white);
+  ++sums_.readings;
+  sums_.weight += weight;
+  sums_.innovation_rad += weight * innovation;
+  sums_.slow2_rad2 += weight * slow * slow;
+  sums_.by_tilt += weight * by_tilt;
+  return true;
+}
+
 int HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
-                           const Eigen::Quaterniond& q_to, double heading_variance) {
-  const double white = DegToRad(options_.reading_sigma_deg);
-  const double slow = DegToRad(options_.correlated_sigma_deg);
-  const double limit =
-      options_.gate_sigmas * std::sqrt(white * white + slow * slow + heading_variance);
+                           const Eigen::Quaterniond& q_to, const Eigen::Matrix3d& covariance) {
   int gated = 0;
   const auto later = [&](const Reading& r) { return r.stamp > to; };
   for (const Reading& reading : waiting_) {
@@ -42,41 +74,41 @@ int HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs
     const double share =
         to > from ? std::clamp(ToSeconds(reading.stamp - from) / ToSeconds(to - from), 0.0, 1.0)
                   : 1.0;
-    const Eigen::Quaterniond q_WB = q_from.slerp(share, q_to);
-    const auto heading = HeadingFromEVector(reading.e_B, q_WB, sun_(reading.stamp));
-    const double innovation = heading ? WrapPi(*heading - CompassHeading(q_WB)) : limit + 1.0;
-    if (std::abs(innovation) > limit) {
-      ++gated;
-      continue;
-    }
-    ++innovations_;
-    innovation_sum_rad_ += innovation;
+    if (!Take(reading, q_from.slerp(share, q_to), covariance)) ++gated;
   }
   std::erase_if(waiting_, [&](const Reading& r) { return !later(r); });
   advanced_to_ = to;
   return gated;
 }
 
-void HeadingFusion::Forget() {
-  innovation_sum_rad_ = 0.0;
-  innovations_ = 0;
-}
-
-std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB) {
+std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB,
+                                                   const Eigen::Matrix3d& covariance) {
   const bool first = !last_edge_;
-  if (innovations_ < (first ? kFirstReadings : 1)) return std::nullopt;
-  const double n = innovations_;
-  const double mean = innovation_sum_rad_ / n;
-  const double white = DegToRad(options_.reading_sigma_deg);
-  const double slow = DegToRad(options_.correlated_sigma_deg);
+  if (sums_.readings < (first ? kFirstReadings : 1)) return std::nullopt;
+  const Sums sums = std::exchange(sums_, {});
+  const double mean = sums.innovation_rad / sums.weight;
+  const double white2 = 1.0 / sums.weight;
+  const double slow2 = sums.slow2_rad2 / sums.weight;
+  const Eigen::Vector2d by_tilt = sums.by_tilt / sums.weight;
+  const double attitude2 = HeadingVariance(by_tilt, covariance);
+  if (std::abs(mean) > options_.edge_gate_sigmas * std::sqrt(white2 + slow2 + attitude2)) {
+    return std::nullopt;
+  }
   // The slow part counts once at the start; after that, as often as it has changed.
   const double slow_share =
-      last_edge_ ? std::max(1.0, 2.0 * options_.correlation_time_s / ToSeconds(stamp - *last_edge_))
-                 : 1.0;
-  Forget();
+      first ? 1.0
+            : std::max(1.0, 2.0 * options_.correlation_time_s / ToSeconds(stamp - *last_edge_));
   last_edge_ = stamp;
-  return HeadingEdge{.heading_rad = WrapPi(CompassHeading(q_WB) + mean),
-                     .sigma_rad = std::sqrt(white * white / n + slow * slow * slow_share)};
+  HeadingEdge edge{.heading_rad = WrapPi(CompassHeading(q_WB) + mean), .q_WB = q_WB};
+  double variance = white2 + slow2 * slow_share;
+  if (options_.full_attitude) {
+    edge.by_tilt = by_tilt;
+  } else {
+    const Eigen::Vector3d tilt(by_tilt.x(), by_tilt.y(), 0.0);
+    variance += tilt.dot(covariance * tilt);
+  }
+  edge.sigma_rad = std::sqrt(variance);
+  return edge;
 }
 
 }  // namespace polnav::nav

@@ -21,9 +21,10 @@ Report PolarimeterCompass::Process(const Measurement& measurement) {
   if (sample == nullptr) return {};
   if (newest_ && sample->stamp <= *newest_) return {.outcome = Outcome::kUnusable};  // late
   newest_ = sample->stamp;
-  const auto e_B = UsableEVector(*sample, options_, calibration_);
-  const auto heading =
-      e_B ? HeadingFromEVector(*e_B, LevelAttitude(last_rad_), sun_(sample->stamp)) : std::nullopt;
+  const auto light = UsableLight(*sample, options_);
+  const auto heading = light ? HeadingFromEVector(EVectorOf(*light, calibration_),
+                                                  LevelAttitude(last_rad_), sun_(sample->stamp))
+                             : std::nullopt;
   if (!heading) return {.outcome = Outcome::kUnusable};
   last_rad_ = *heading;
   Estimate estimate{.stamp = sample->stamp, .T_WB = {.q = LevelAttitude(last_rad_)}};

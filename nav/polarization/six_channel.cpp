@@ -21,15 +21,18 @@ std::optional<PolarizedLight> DecodeSixChannels(const PolarizationSample& sample
       .pair_sum = p[0] + p[1] + p[2]};
 }
 
-std::optional<Eigen::Vector3d> UsableEVector(const PolarizationSample& sample,
-                                             const PolarizationOptions& options,
-                                             const PolarimeterCalibration& calibration) {
+std::optional<PolarizedLight> UsableLight(const PolarizationSample& sample,
+                                          const PolarizationOptions& options) {
   const auto light = DecodeSixChannels(sample);
   if (!light || light->dop < options.min_dop || std::abs(light->pair_sum) > options.max_pair_sum) {
     return std::nullopt;
   }
-  const Eigen::Vector3d e_S(std::cos(light->axis_rad), std::sin(light->axis_rad), 0.0);
-  return calibration.T_BS.q * e_S;
+  return light;
+}
+
+Eigen::Vector3d EVectorOf(const PolarizedLight& light, const PolarimeterCalibration& calibration) {
+  return calibration.T_BS.q *
+         Eigen::Vector3d(std::cos(light.axis_rad), std::sin(light.axis_rad), 0.0);
 }
 
 }  // namespace polnav::nav

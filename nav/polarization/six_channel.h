@@ -22,10 +22,12 @@ struct PolarizedLight {
 // Nothing when a pair sees no light.
 [[nodiscard]] std::optional<PolarizedLight> DecodeSixChannels(const PolarizationSample& sample);
 
-// The light's E-vector in B, a unit vector whose sign means nothing. Nothing when the light is too
-// little polarized or the channels contradict each other.
-[[nodiscard]] std::optional<Eigen::Vector3d> UsableEVector(
-    const PolarizationSample& sample, const PolarizationOptions& options,
-    const PolarimeterCalibration& calibration);
+// Nothing when the light is too little polarized or the channels contradict each other.
+[[nodiscard]] std::optional<PolarizedLight> UsableLight(const PolarizationSample& sample,
+                                                        const PolarizationOptions& options);
+
+// The light's E-vector in B, a unit vector whose sign means nothing.
+[[nodiscard]] Eigen::Vector3d EVectorOf(const PolarizedLight& light,
+                                        const PolarimeterCalibration& calibration);
 
 }  // namespace polnav::nav

@@ -22,4 +22,15 @@ std::optional<double> HeadingFromEVector(const Eigen::Vector3d& e_B, const Eigen
   return WrapPi(CompassHeading(q_WB) - gamma);  // a turn about +z lowers the compass heading
 }
 
+Eigen::Vector2d HeadingByTilt(const Eigen::Vector3d& e_W, const Eigen::Vector3d& sun_W) {
+  // s . Exp(dtheta) e_W = s . e_W + dtheta . (e_W x s): a tilt is made up for by a turn about z.
+  const Eigen::Vector3d by_turn = e_W.cross(sun_W);
+  return by_turn.head<2>() / by_turn.z();
+}
+
+double RayleighDop(const Eigen::Vector3d& look_W, const Eigen::Vector3d& sun_W, double max_dop) {
+  const double cosine = look_W.dot(sun_W);
+  return max_dop * (1.0 - cosine * cosine) / (1.0 + cosine * cosine);
+}
+
 }  // namespace polnav::nav

@@ -21,4 +21,13 @@ namespace polnav::nav {
                                                        const Eigen::Quaterniond& q_WB,
                                                        const Eigen::Vector3d& sun_W);
 
+// How the heading answered above changes with a tilt (dtheta_E, dtheta_N) of the attitude in W [-].
+// Grows with the sun's height.
+[[nodiscard]] Eigen::Vector2d HeadingByTilt(const Eigen::Vector3d& e_W,
+                                            const Eigen::Vector3d& sun_W);
+
+// Degree of polarization under a Rayleigh sky of this maximum, in direction look_W.
+[[nodiscard]] double RayleighDop(const Eigen::Vector3d& look_W, const Eigen::Vector3d& sun_W,
+                                 double max_dop);
+
 }  // namespace polnav::nav

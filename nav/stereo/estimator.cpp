@@ -11,9 +11,9 @@
 namespace polnav::nav {
 namespace {
 
-// What a vehicle that nothing is seen from may do besides going on as before: a car brakes by
-// about 1 m/s and turns in by about 3 deg/s before anybody would call it a surprise.
-constexpr double kCoastSpeedSigma_m_s = 1.0;
+// What a vehicle may do besides going on as before, without an IMU to tell: from one frame to the
+// next a car brakes by about 0.5 m/s and turns in by about 3 deg/s.
+constexpr double kCoastSpeedSigma_m_s = 0.5;
 constexpr double kCoastRateSigma_rad_s = 0.05;
 
 constexpr std::size_t kFirstKeyframes = 4;
@@ -87,8 +87,8 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   step_ = features.stamp - before;
   stamp_ = features.stamp;
   if (polarization_) {
-    report.gated_readings =
-        polarization_->Advance(before, q_before, stamp_, T_WB_.q, covariance_(5, 5));
+    report.gated_readings = polarization_->Advance(before, q_before, stamp_, T_WB_.q,
+                                                   covariance_.bottomRightCorner<3, 3>());
   }
   report.inliers = solution ? solution->inliers : 0;
   if (!solution || NeedsKeyframe(report.inliers)) {
@@ -150,9 +150,7 @@ std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<Landma
                                                         const Expectation& expected,
                                                         Report& report) {
   const std::vector<bool> verdicts =
-      expected.by_imu
-          ? MovesAsPredicted(camera_, views, expected.pose, adjustment_.sigmas)
-          : MovesWithScene(camera_, views, T_WB_, expected.pose.T_WB, options_.flow_threshold_px);
+      MovesWithScene(camera_, views, expected.pose, adjustment_.sigmas, options_.flow_gate_sigmas);
   std::vector<LandmarkView> kept;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (verdicts[i]) kept.push_back(views[i]);
@@ -201,7 +199,9 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
                                   const std::vector<LandmarkView>& seen,
                                   const std::optional<CoastSigmas>& coasted) {
   Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_, .coasted = coasted};
-  if (polarization_) keyframe.heading = polarization_->TakeEdge(stamp_, T_WB_.q);
+  if (polarization_)
+    keyframe.heading =
+        polarization_->TakeEdge(stamp_, T_WB_.q, covariance_.bottomRightCorner<3, 3>());
   if (imu_ && !window_.keyframes.empty()) {
     const Motion& before = window_.keyframes.back().motion;
     keyframe.motion = before;

@@ -54,10 +54,10 @@ struct StereoOptions {
   // window knows. Larger trusts vision less.
   double pixel_sigma_px = 1.0;
   double disparity_sigma_px = 0.8;
-  double flow_threshold_px = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
-  double inlier_sigmas = 1.5;      // departure from the solved pose that makes an outlier
-  int min_inliers = 12;            // fewer: the frame is not tracked, the estimate coasts
-  int window_keyframes = 8;        // longer: less drift, slower (cost grows with its square)
+  double flow_gate_sigmas = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
+  double inlier_sigmas = 1.5;     // departure from the solved pose that makes an outlier
+  int min_inliers = 12;           // fewer: the frame is not tracked, the estimate coasts
+  int window_keyframes = 8;       // longer: less drift, slower (cost grows with its square)
   double keyframe_distance_m = 1.4;
   double keyframe_angle_deg = 4.0;
   double keyframe_overlap = 0.5;  // a keyframe too when fewer of the last one's points are left
@@ -71,7 +71,7 @@ struct StereoOptions {
     v("tracker", tracker);
     v("pixel_sigma_px", pixel_sigma_px, {.min = 0.01, .max = 10.0});
     v("disparity_sigma_px", disparity_sigma_px, {.min = 0.01, .max = 10.0});
-    v("flow_threshold_px", flow_threshold_px, {.min = 0.1, .max = 100.0});
+    v("flow_gate_sigmas", flow_gate_sigmas, {.min = 1.0, .max = 100.0});
     v("inlier_sigmas", inlier_sigmas, {.min = 1.0, .max = 20.0});
     v("min_inliers", min_inliers, {.min = 4, .max = 1000});
     v("window_keyframes", window_keyframes, {.min = 3, .max = 50});

@@ -14,7 +14,10 @@ constexpr double kStep = 1e-6;
 
 TEST(HeadingEdge, JacobianAgreesWithFiniteDifferences) {
   const Pose pose{ExpRotation({0.05, -0.08, 1.9}), {1, 2, 3}};
-  const HeadingEdge edge{.heading_rad = 0.1, .sigma_rad = 0.02};
+  const HeadingEdge edge{.heading_rad = 0.1,
+                         .sigma_rad = 0.02,
+                         .by_tilt = {0.3, -0.2},
+                         .q_WB = ExpRotation({0.03, -0.1, 1.8})};
   const HeadingResidual e = EvaluateHeading(edge, pose);
   for (int k = 0; k < 6; ++k) {
     const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);

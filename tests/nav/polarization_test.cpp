@@ -11,6 +11,8 @@
 namespace polnav::nav {
 namespace {
 
+const Eigen::Matrix3d kSure = 1e-6 * Eigen::Matrix3d::Identity();  // [rad^2]
+
 // [Zeng2020, eq. 2] with its factor 2 mended.
 PolarizationSample Channels(double intensity, double dop, double phi) {
   constexpr std::array<double, 6> kAnglesDeg = {0, 90, 60, 150, 120, 210};
@@ -107,6 +109,25 @@ TEST(SkyHeading, TheSignOfTheEVectorMeansNothing) {
   EXPECT_NEAR(*HeadingFromEVector(e, q, sun), *HeadingFromEVector(-e, q, sun), 1e-12);
 }
 
+TEST(SkyHeading, ByTiltIsTheDerivative) {
+  const Eigen::Vector3d sun = Sun(1.0, 0.5);
+  const Eigen::Quaterniond q = LevelAttitude(2.0) * ExpRotation({0.02, 0.04, 0.0});
+  const Eigen::Vector3d e_B = ZenithEVector(q, sun);
+  const Eigen::Vector2d by_tilt = HeadingByTilt(q * e_B, sun);
+  constexpr double kStep = 1e-6;
+  for (int k = 0; k < 2; ++k) {
+    // The heading answered for a tilted attitude, less what the tilt itself does to the compass
+    // heading of the body's axis: only a turn about the vertical counts as one.
+    const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(k);
+    const auto turn_for = [&](const Eigen::Quaterniond& tilted) {
+      return *HeadingFromEVector(e_B, tilted, sun) - CompassHeading(tilted);
+    };
+    const double difference =
+        (turn_for(ExpRotation(d) * q) - turn_for(ExpRotation(-d) * q)) / (2.0 * kStep);
+    EXPECT_NEAR(difference, by_tilt(k), 1e-7) << k;
+  }
+}
+
 // Readings every 50 ms of a standing vehicle whose heading vision believes to be off by 0.01 rad.
 TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
   const Eigen::Vector3d sun = Sun(2.0, 0.3);
@@ -116,16 +137,18 @@ TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
   const Eigen::Quaterniond believed = LevelAttitude(0.71);
   const Eigen::Vector3d e = ZenithEVector(truth, sun);
   for (int i = 1; i <= 20; ++i) {
-    PolarizationSample sample = Channels(0.3, 0.5, std::atan2(e.y(), e.x()));
+    // Never twice the same to the last bit.
+    PolarizationSample sample = Channels(0.3 + 1e-6 * i, 0.5, std::atan2(e.y(), e.x()));
     sample.stamp = i * kNsPerSecond / 20;
     EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
   }
-  EXPECT_EQ(fusion.Advance(0, believed, kNsPerSecond, believed, 0.01), 0);
-  const auto edge = fusion.TakeEdge(kNsPerSecond, believed);
+  EXPECT_EQ(fusion.Advance(0, believed, kNsPerSecond, believed, 0.01 * Eigen::Matrix3d::Identity()),
+            0);
+  const auto edge = fusion.TakeEdge(kNsPerSecond, believed, kSure);
   ASSERT_TRUE(edge);
   EXPECT_NEAR(edge->heading_rad, 0.7, 1e-9);
   EXPECT_NEAR(edge->sigma_rad, DegToRad(1.0) / std::sqrt(20.0), 1e-12);
-  EXPECT_FALSE(fusion.TakeEdge(kNsPerSecond, believed)) << "no reading is used twice";
+  EXPECT_FALSE(fusion.TakeEdge(kNsPerSecond, believed, kSure)) << "no reading is used twice";
 }
 
 TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
@@ -133,8 +156,37 @@ TEST(HeadingFusion, AReadingFarFromVisionIsGated) {
   HeadingFusion fusion({}, {}, [&](TimeNs) { return sun; });
   const Eigen::Vector3d e = ZenithEVector(LevelAttitude(0.7), sun);
   ASSERT_EQ(fusion.Add(Channels(0.3, 0.5, std::atan2(e.y(), e.x()))), Outcome::kUsed);
-  EXPECT_EQ(fusion.Advance(0, LevelAttitude(1.2), 0, LevelAttitude(1.2), 1e-6), 1);
-  EXPECT_FALSE(fusion.TakeEdge(0, LevelAttitude(1.2)));
+  EXPECT_EQ(fusion.Advance(0, LevelAttitude(1.2), 0, LevelAttitude(1.2), kSure), 1);
+  EXPECT_FALSE(fusion.TakeEdge(0, LevelAttitude(1.2), kSure));
+}
+
+// Clear is half of 0.7 times Rayleigh's at 60 degrees from the sun: 0.8 * 0.7 * 0.6 = 0.336.
+TEST(HeadingFusion, LightFromElsewhereCountsForLess) {
+  const Eigen::Vector3d sun = Sun(2.0, DegToRad(30.0));
+  const Eigen::Quaterniond q = LevelAttitude(0.7);
+  const Eigen::Vector3d e = ZenithEVector(q, sun);
+  const auto sigma = [&](double dop) {
+    HeadingFusion fusion({.reading_sigma_deg = 0.01, .correlated_sigma_deg = 0.3}, {},
+                         [&](TimeNs) { return sun; });
+    for (int i = 1; i <= 20; ++i) {
+      PolarizationSample sample = Channels(0.3 + 1e-6 * i, dop, std::atan2(e.y(), e.x()));
+      sample.stamp = i;
+      (void)fusion.Add(sample);
+    }
+    (void)fusion.Advance(0, q, 20, q, kSure);
+    return RadToDeg(fusion.TakeEdge(20, q, kSure)->sigma_rad);
+  };
+  EXPECT_NEAR(sigma(0.4), 0.3, 0.01);
+  EXPECT_NEAR(sigma(0.168), std::hypot(0.3, 6.0), 0.01);  // half of it from elsewhere
+}
+
+TEST(HeadingFusion, AFrozenDriverIsNoSky) {
+  HeadingFusion fusion({}, {}, [](TimeNs) { return Eigen::Vector3d::UnitX(); });
+  PolarizationSample sample = Channels(0.3, 0.5, 0.4);
+  sample.stamp = 10;
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
+  sample.stamp = 20;
+  EXPECT_EQ(fusion.Add(sample), Outcome::kUnusable);
 }
 
 TEST(HeadingFusion, TakesNoReadingTwiceOrLate) {
@@ -143,10 +195,12 @@ TEST(HeadingFusion, TakesNoReadingTwiceOrLate) {
   sample.stamp = 10;
   EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
   EXPECT_EQ(fusion.Add(sample), Outcome::kUnusable);
-  (void)fusion.Advance(0, LevelAttitude(0.0), 20, LevelAttitude(0.0), 1.0);
+  (void)fusion.Advance(0, LevelAttitude(0.0), 20, LevelAttitude(0.0), kSure);
   sample.stamp = 15;
+  sample.channel[0] += 1e-6;
   EXPECT_EQ(fusion.Add(sample), Outcome::kUnusable);
   sample.stamp = 25;
+  sample.channel[0] += 1e-6;
   EXPECT_EQ(fusion.Add(sample), Outcome::kUsed);
 }
 
