@@ -4,8 +4,10 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "nav/api/geometry.h"
+#include "nav/api/stage_times.h"
 #include "nav/api/time.h"
 
 namespace polnav::nav {
@@ -36,16 +38,33 @@ enum class Outcome {
   kIgnored,   // this estimator has no use for it
 };
 
+// The heading that one reading of the sky gave, less the one expected, both at its stamp.
+struct SkyResidual {
+  TimeNs stamp = 0;
+  double residual_rad = 0.0;
+  double sigma_rad = 0.0;  // of the residual, as the gate believes
+  bool gated = false;
+};
+
 // What became of one measurement.
 struct Report {
   Outcome outcome = Outcome::kIgnored;
-  int features = 0;                  // offered
-  int inliers = 0;                   // used
-  int flow_rejected = 0;             // moved otherwise than the scene [Chu2021, eq. 12]
-  int gated_readings = 0;            // of polarization, kept until now, inconsistent after all
-  int keyframes = 0;                 // 1 when this measurement made one
-  int returns = 0;                   // 1 when a known place was recognized
-  int failed_solves = 0;             // optimizations without a usable answer: the old one stays
+  int features = 0;          // offered
+  int inliers = 0;           // used
+  int flow_rejected = 0;     // moved otherwise than the scene [Chu2021, eq. 12]
+  int pose_rejected = 0;     // outliers of the pose
+  int map_rejected = 0;      // landmarks that the bundle adjustment took out
+  int gated_readings = 0;    // of polarization, kept until now, inconsistent after all
+  int keyframes = 0;         // 1 when this measurement made one
+  int returns = 0;           // 1 when a known place was recognized
+  int failed_solves = 0;     // optimizations without a usable answer: the old one stays
+  int window_keyframes = 0;  // in the map, when all is done
+  int window_landmarks = 0;
+  // Chi square of the pose's inliers over its degrees of freedom: 1 when their sigmas are honest
+  // and the map is exact.
+  std::optional<double> vision_nis;
+  std::vector<SkyResidual> sky;  // readings that the frame's attitude made usable
+  StageTimes stage_s{};
   std::optional<Estimate> estimate;  // present when the measurement produced one
 };
 

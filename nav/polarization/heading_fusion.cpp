@@ -55,7 +55,9 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
       DegToRad(std::hypot(options_.correlated_sigma_deg, options_.foreign_sigma_deg * foreign));
   const double innovation = WrapPi(*heading - CompassHeading(q_WB));
   const double variance = white * white + slow * slow + HeadingVariance(by_tilt, covariance);
-  if (std::abs(innovation) > options_.gate_sigmas * std::sqrt(variance)) return false;
+  const bool gated = std::abs(innovation) > options_.gate_sigmas * std::sqrt(variance);
+  residuals_.push_back({reading.stamp, innovation, std::sqrt(variance), gated});
+  if (gated) return false;
   const double weight = 1.0 / (white * white);
   ++sums_.readings;
   sums_.weight += weight;
@@ -68,6 +70,7 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
 int HeadingFusion::Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
                            const Eigen::Quaterniond& q_to, const Eigen::Matrix3d& covariance) {
   int gated = 0;
+  residuals_.clear();
   const auto later = [&](const Reading& r) { return r.stamp > to; };
   for (const Reading& reading : waiting_) {
     if (later(reading)) continue;

@@ -43,6 +43,9 @@ class HeadingFusion {
   [[nodiscard]] int Advance(TimeNs from, const Eigen::Quaterniond& q_from, TimeNs to,
                             const Eigen::Quaterniond& q_to, const Eigen::Matrix3d& covariance);
 
+  // Of every reading that the last Advance used or gated.
+  [[nodiscard]] const std::vector<SkyResidual>& residuals() const { return residuals_; }
+
   // The heading of the keyframe at `stamp`, whose attitude is q_WB; empties the average. Nothing
   // when there are too few readings, or their mean is too far from an attitude of this covariance.
   [[nodiscard]] std::optional<HeadingEdge> TakeEdge(TimeNs stamp, const Eigen::Quaterniond& q_WB,
@@ -69,6 +72,7 @@ class HeadingFusion {
   PolarimeterCalibration calibration_;
   SunModel sun_;
   std::vector<Reading> waiting_;
+  std::vector<SkyResidual> residuals_;
   std::optional<PolarizationSample> newest_;
   Sums sums_;
   std::optional<TimeNs> last_edge_;

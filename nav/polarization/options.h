@@ -10,7 +10,7 @@ struct PolarizationOptions {
   double min_dop = 0.10;               // below, a reading is unusable
   double max_pair_sum = 0.12;          // |p1 + p2 + p3|: zero for a healthy sensor
   // What light from elsewhere (cloud, leaves) fakes besides, where it is as much as the sky's own.
-  double foreign_sigma_deg = 6.0;
+  double foreign_sigma_deg = 2.0;
   double clear_dop = 0.70;   // of a clear sky, 90 degrees from the sun; the least expected is 0.8
                              // of what that gives where the sensor looks
   double gate_sigmas = 4.0;  // readings beyond are left out

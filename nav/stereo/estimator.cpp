@@ -76,6 +76,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
     report.outcome = Outcome::kUnusable;
     return report;
   }
+  StageWatch watch(report.stage_s);
   const TimeNs before = starting ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Expectation expected = Expect(features.stamp);
@@ -89,8 +90,14 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   if (polarization_) {
     report.gated_readings = polarization_->Advance(before, q_before, stamp_, T_WB_.q,
                                                    covariance_.bottomRightCorner<3, 3>());
+    report.sky = polarization_->residuals();
   }
-  report.inliers = solution ? solution->inliers : 0;
+  if (solution) {
+    report.inliers = solution->inliers;
+    report.pose_rejected = static_cast<int>(views.size()) - solution->inliers;
+    report.vision_nis = solution->nis;
+  }
+  watch.Lap(Stage::kPose);
   if (!solution || NeedsKeyframe(report.inliers)) {
     if (!solution && !expected.by_imu) Begin(covariance_);
     std::optional<CoastSigmas> coasted;
@@ -100,6 +107,8 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   }
   if (!solution && !starting) report.outcome = Outcome::kUnusable;
   ForgetRejected(features);
+  report.window_keyframes = static_cast<int>(window_.keyframes.size());
+  report.window_landmarks = static_cast<int>(window_.landmarks.size());
   report.estimate = Answer(solution.has_value() || starting);
   return report;
 }
@@ -230,12 +239,15 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
 }
 
 void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& report) {
+  StageWatch watch(report.stage_s);
   report.keyframes = 1;
   if (!AdjustBundle(camera_, adjustment_, window_).usable) ++report.failed_solves;
   for (const std::uint64_t id :
        RemoveOutliers(camera_, adjustment_.sigmas, options_.inlier_sigmas, window_)) {
     rejected_.insert(id);
+    ++report.map_rejected;
   }
+  watch.Lap(Stage::kAdjustment);
   // motion_ stays: a correction of the whole window is not a motion of the vehicle.
   const Keyframe& newest = window_.keyframes.back();
   T_WB_ = newest.T_WB;
@@ -246,7 +258,10 @@ void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& rep
   if (static_cast<int>(window_.keyframes.size()) > options_.window_keyframes) {
     MarginalizeOldest(camera_, adjustment_, window_);
   }
-  if (loops_) loops_->Add(camera_, window_, covariance_, features, solver_, report);
+  watch.Lap(Stage::kCovariance);
+  if (!loops_) return;
+  loops_->Add(camera_, window_, covariance_, features, solver_, report);
+  watch.Lap(Stage::kLoops);
 }
 
 // A new window at the current pose: at the start, and when the thread to the old one is lost.

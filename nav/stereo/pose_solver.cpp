@@ -50,12 +50,17 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
     if (step.cwiseAbs().maxCoeff() < 1e-5) break;
   }
   std::vector<LandmarkView> inliers;
+  double chi2 = 0.0;
+  int degrees_of_freedom = -6;
   for (const LandmarkView& view : views) {
     const auto e =
         Reproject(camera, *view.T_WBh, solution.T_WB, view.landmark, view.pixel, options.sigmas);
     const bool in = e && e->residual.cwiseAbs().maxCoeff() <= options.inlier_sigmas;
     solution.inlier.push_back(in);
-    if (in) inliers.push_back(view);
+    if (!in) continue;
+    inliers.push_back(view);
+    chi2 += e->residual.squaredNorm();
+    degrees_of_freedom += view.pixel.disparity_px ? 3 : 2;
   }
   solution.inliers = static_cast<int>(inliers.size());
   if (solution.inliers < min_inliers) return std::nullopt;
@@ -63,6 +68,7 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
   const Eigen::LDLT<Matrix6d> solver(n.H);
   if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
   solution.T_WB = Perturb(solution.T_WB, -solver.solve(n.g));
+  solution.nis = chi2 / std::max(1, degrees_of_freedom);
   solution.covariance = solver.solve(Matrix6d::Identity());
   return solution;
 }

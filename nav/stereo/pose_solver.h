@@ -37,6 +37,7 @@ struct PoseSolution {
   Pose T_WB;
   std::vector<bool> inlier;  // one a view
   int inliers = 0;
+  double nis = 0.0;  // chi2 of the inliers over its degrees of freedom, at the robust solution
   Matrix6d covariance = Matrix6d::Zero();  // of (dp, dtheta) in W, landmarks taken as known
 };
 

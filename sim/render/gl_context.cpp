@@ -10,6 +10,11 @@ namespace {
 
 constexpr int kSurfaceSide = 8;
 
+std::mutex& LlvmpipeMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 OSMesaContext CreateContext() {
   // Read once, when Mesa makes the process's first context.
   static std::once_flag once;
@@ -44,6 +49,8 @@ GLuint CompileShader(const GlFunctions& gl, GLenum kind, const char* source) {
 }
 
 }  // namespace
+
+GlTurn::GlTurn() : lock_(LlvmpipeMutex()) {}
 
 GlContext::GlContext()
     : context_(CreateContext()), surface_(std::size_t{4} * kSurfaceSide * kSurfaceSide) {

@@ -1,14 +1,20 @@
 // Where does OpenGL come from without a display?
 //
 // OSMesa's llvmpipe: OpenGL 3.3 core, rasterized in the calling thread, so that the bytes depend
-// neither on the number of cores nor on who else is drawing. All contexts of one process share a
-// rasterizer behind a lock: renderers in several threads are correct, but take turns.
+// neither on the number of cores nor on who else is drawing.
+//
+// Threads take turns (GlTurn), each with a context of its own: all contexts of a process share
+// one llvmpipe, and whenever one of them binds or reads a texture, llvmpipe looks for it in the
+// scenes of all the others while their threads fill and free them (llvmpipe_flush_resource in Mesa
+// 22.3 locks the list of contexts, not what they hold). Rasterizing is behind a lock of Mesa's own
+// in any case.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/osmesa.h>
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace polnav::sim {
@@ -35,6 +41,16 @@ struct GlFunctions {
 #undef POLNAV_GL_MEMBER
 };
 
+// While one lives, no other thread has one. The process's, as is the llvmpipe that it guards.
+class GlTurn {
+ public:
+  GlTurn();
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+};
+
+// All that is done with it, from its construction to its end, needs a GlTurn.
 class GlContext {
  public:
   GlContext();

@@ -200,12 +200,18 @@ void Renderer::Impl::DrawSky(const nav::Pose& T_CW, const PictureLight& light) {
 }
 
 Renderer::Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
-                   const std::vector<Eigen::Vector2d>& unneeded_px)
-    : impl_(std::make_unique<Impl>(scene, sky, view, unneeded_px)) {}
+                   const std::vector<Eigen::Vector2d>& unneeded_px) {
+  const GlTurn turn;
+  impl_ = std::make_unique<Impl>(scene, sky, view, unneeded_px);
+}
 
-Renderer::~Renderer() = default;
+Renderer::~Renderer() {
+  const GlTurn turn;
+  impl_.reset();
+}
 
 void Renderer::Render(const RenderRequest& request, cv::Mat& image) {
+  const GlTurn turn;
   Impl& r = *impl_;
   r.context.MakeCurrent();
   r.MoveClouds(request.stamp);

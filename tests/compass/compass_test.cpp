@@ -262,6 +262,9 @@ TEST(CalibrateFromTurn, ItsCovarianceIsWhatIsLeft) {
   series.camera.offset_sigma = 0.001;
   series.camera.polarizer_angle_sigma_deg = 0.5;
   series.camera.mount_error_sigma_deg = 0.3;
+  series.camera.width_px /= 2;
+  series.camera.height_px /= 2;
+  series.camera.focal_px /= 2.0;
   series.sky.clouds = "clear";
   series.images_per_instrument = 1;
   double square = 0.0;

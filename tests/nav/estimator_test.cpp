@@ -94,6 +94,29 @@ TEST(StereoEstimator, PointsThatMoveTogetherAreLeftOut) {
   EXPECT_LT((report.estimate->T_WB.p - drive.street.PoseAt(0.6 * 30).p).norm(), 0.1);
 }
 
+TEST(StereoEstimator, ReportsItsInsides) {
+  Drive drive;
+  drive.Go(0, 60, 0.2);
+  int adjusted = 0;
+  for (int k = 60; k < 80; ++k) {
+    const Report report = drive.estimator.Process(
+        drive.street.See(drive.street.PoseAt(0.6 * k), k * kNsPerSecond / 10, 0.2));
+    EXPECT_LE(report.inliers + report.flow_rejected + report.pose_rejected, report.features);
+    EXPECT_GT(report.window_landmarks, report.inliers / 2);
+    EXPECT_EQ(report.window_keyframes, StereoOptions{}.window_keyframes);
+    EXPECT_TRUE(report.vision_nis);
+    const auto took_s = [&](Stage stage) {
+      return report.stage_s[static_cast<std::size_t>(stage)];
+    };
+    EXPECT_GT(took_s(Stage::kPose), 0.0);
+    EXPECT_EQ(took_s(Stage::kAdjustment) > 0.0, report.keyframes == 1);
+    EXPECT_EQ(took_s(Stage::kCovariance) > 0.0, report.keyframes == 1);
+    EXPECT_EQ(took_s(Stage::kLoops), 0.0);
+    adjusted += report.keyframes;
+  }
+  EXPECT_GT(adjusted, 5);
+}
+
 TEST(StereoEstimator, PolarizationPullsAWrongStartingHeadingBack) {
   const Eigen::Vector3d sun = Eigen::Vector3d(0.6, -0.7, 0.3).normalized();
   Drive drive;

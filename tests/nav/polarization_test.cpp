@@ -144,6 +144,12 @@ TEST(HeadingFusion, AveragesReadingsAndStatesTheirVariance) {
   }
   EXPECT_EQ(fusion.Advance(0, believed, kNsPerSecond, believed, 0.01 * Eigen::Matrix3d::Identity()),
             0);
+  ASSERT_EQ(fusion.residuals().size(), 20U);
+  for (const SkyResidual& r : fusion.residuals()) {
+    EXPECT_NEAR(r.residual_rad, -0.01, 1e-9);
+    EXPECT_GT(r.sigma_rad, std::hypot(DegToRad(1.0), 0.1) - 1e-12);  // the reading's and vision's
+    EXPECT_FALSE(r.gated);
+  }
   const auto edge = fusion.TakeEdge(kNsPerSecond, believed, kSure);
   ASSERT_TRUE(edge);
   EXPECT_NEAR(edge->heading_rad, 0.7, 1e-9);
@@ -177,7 +183,7 @@ TEST(HeadingFusion, LightFromElsewhereCountsForLess) {
     return RadToDeg(fusion.TakeEdge(20, q, kSure)->sigma_rad);
   };
   EXPECT_NEAR(sigma(0.4), 0.3, 0.01);
-  EXPECT_NEAR(sigma(0.168), std::hypot(0.3, 6.0), 0.01);  // half of it from elsewhere
+  EXPECT_NEAR(sigma(0.168), std::hypot(0.3, 2.0), 0.01);  // half of it from elsewhere
 }
 
 TEST(HeadingFusion, AFrozenDriverIsNoSky) {

@@ -65,6 +65,16 @@ TEST_F(PoseSolverTest, ManyViewsOverruleThePrior) {
   }
 }
 
+// Some 440 squares of unit Gaussians cut at three sigma (0.973 each on average): their mean is
+// known to sqrt(2 / 440) = 0.07. Twice the noise is four times the squares, less what becomes an
+// outlier.
+TEST_F(PoseSolverTest, NisIsOneWhenPixelsAreAsNoisyAsBelieved) {
+  const auto views = Views(150, 8.0);
+  EXPECT_NEAR(SolvePose(camera_, views, truth_, options_, 12)->nis, 0.97, 3.0 * 0.07);
+  options_.sigmas = {.position_px = 0.35, .disparity_px = 0.3};
+  EXPECT_GT(SolvePose(camera_, views, truth_, options_, 12)->nis, 2.0);
+}
+
 // Twelve points 90 m away know the place to half a metre, constant velocity to a tenth.
 TEST_F(PoseSolverTest, FewFarViewsLeaveThePlaceToThePrior) {
   const auto views = Views(12, 90.0);

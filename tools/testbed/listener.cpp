@@ -104,7 +104,7 @@ void Listener::Take(const nav::Measurement& measurement) {
   if (const auto* sky = std::get_if<nav::PolarizationImage>(&measurement)) KeepSkyImage(*sky);
   for (RunningEstimator& e : estimators_) {
     const auto estimator_begin = Clock::now();
-    Feed(measurement, e);
+    static_cast<void>(Feed(measurement, e));
     // Only pictures take a time worth a line in the report.
     if (std::holds_alternative<nav::PolarizationImage>(measurement)) {
       record_.timing[e.run.name].ms.push_back(MsSince(estimator_begin));
@@ -142,16 +142,27 @@ void Listener::TakeSeen(const nav::StereoFeatures& features) {
 void Listener::TakeFeatures(const nav::StereoFeatures& features) {
   for (RunningEstimator& e : estimators_) {
     const auto estimator_begin = Clock::now();
-    Feed(nav::Measurement(features), e);
+    const nav::Report report = Feed(nav::Measurement(features), e);
     record_.timing[e.run.name].ms.push_back(MsSince(estimator_begin));
+    KeepDiagnostics(report, e);
   }
 }
 
-void Listener::Feed(const nav::Measurement& measurement, RunningEstimator& e) {
+// Stages as "stereo/pose"; one that a frame did not reach is no call of it.
+void Listener::KeepDiagnostics(const nav::Report& report, RunningEstimator& e) {
+  e.run.diagnostics.Add(report);
+  for (std::size_t i = 0; i < report.stage_s.size(); ++i) {
+    if (report.stage_s[i] <= 0.0) continue;
+    record_.timing[e.run.name + "/" + nav::kStageNames[i]].ms.push_back(1e3 * report.stage_s[i]);
+  }
+}
+
+nav::Report Listener::Feed(const nav::Measurement& measurement, RunningEstimator& e) {
   const nav::Report report =
       std::visit([&](auto& estimator) { return estimator.Process(measurement); }, e.estimator);
   e.run.counts.Add(report);
   if (report.estimate) e.run.estimates.push_back(*report.estimate);
+  return report;
 }
 
 // Four views spread over the run.

@@ -56,7 +56,8 @@ class Listener {
   void TakeSeen(const nav::StereoFeatures& features);
   void TakeFeatures(const nav::StereoFeatures& features);
   void LeaveOut();
-  static void Feed(const nav::Measurement& measurement, RunningEstimator& e);
+  static nav::Report Feed(const nav::Measurement& measurement, RunningEstimator& e);
+  void KeepDiagnostics(const nav::Report& report, RunningEstimator& e);
   void LookAtMemory(nav::TimeNs stamp);
   [[nodiscard]] bool IsSampleDue(nav::TimeNs stamp) const;
   void KeepSampleImage(const nav::StereoImages& images);

@@ -39,10 +39,11 @@ std::string HtmlReport(const ReportInput& input) {
       EscapeMarkup(input.scenario.name) + " – Polnav</title>\n<style>\n";
   html.append(ReportCss()).append("</style></head>\n<body><main>\n");
   html += HeaderSection(input) + "\n" + ErrorSections(input) + "\n" + CriteriaSection(input) +
-          "\n" + ChartSections(input) + "\n" + FaultSection(input) + "\n" + PictureSection(input) +
-          "\n" + TimingAndStreamSections(input) + "\n" + AgainSection(input);
+          "\n" + ChartSections(input) + "\n" + DiagnosticSections(input) + "\n" +
+          FaultSection(input) + "\n" + PictureSection(input) + "\n" +
+          TimingAndStreamSections(input) + "\n" + AgainSection(input);
   html.append("\n</main>\n<script>").append(ChartJs()).append("</script>\n<script>const run = ");
-  html += ScriptSafe(ChartData(input.record, input.scenario.faults));
+  html += ScriptSafe(ChartData(input.record, input.scenario));
   return html.append(";\n").append(ReportJs()).append("</script>\n</body></html>\n");
 }
 

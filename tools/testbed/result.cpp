@@ -21,6 +21,8 @@ Json ToJson(const OutcomeCounts& counts) {
           {"features", counts.features},
           {"inliers", counts.inliers},
           {"flow_rejected", counts.flow_rejected},
+          {"pose_rejected", counts.pose_rejected},
+          {"map_rejected", counts.map_rejected},
           {"returns", counts.returns},
           {"gated_readings", counts.gated_readings},
           {"failed_solves", counts.failed_solves}};
@@ -34,10 +36,11 @@ double AnsweredFraction(const OutcomeCounts& counts) {
 
 Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
   Json json = {{"sha256", run.sha256}};
-  if (truth.empty()) {  // nothing to score against
-    json["measurements"] = ToJson(run.counts);
-    return json;
+  if (const Json diagnostics = testbed::ToJson(run.diagnostics); !diagnostics.is_null()) {
+    json["diagnostics"] = diagnostics;
   }
+  json["measurements"] = ToJson(run.counts);
+  if (truth.empty()) return json;  // nothing to score against
   // No answer at all leaves every metric out: criteria about it fail.
   if (const auto score = Score(truth, run.estimates, run.heading_only)) {
     json.update(testbed::ToJson(*score));
@@ -49,7 +52,6 @@ Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
     json["alignment"] = NameOf(run.alignment);
     json["nees"] = nullptr;  // the alignment took away some of what the covariance stands for
   }
-  json["measurements"] = ToJson(run.counts);
   return json;
 }
 

@@ -13,6 +13,8 @@ void OutcomeCounts::Add(const nav::Report& report) {
   features += static_cast<std::uint64_t>(report.features);
   inliers += static_cast<std::uint64_t>(report.inliers);
   flow_rejected += static_cast<std::uint64_t>(report.flow_rejected);
+  pose_rejected += static_cast<std::uint64_t>(report.pose_rejected);
+  map_rejected += static_cast<std::uint64_t>(report.map_rejected);
   gated_readings += static_cast<std::uint64_t>(report.gated_readings);
   returns += static_cast<std::uint64_t>(report.returns);
   failed_solves += static_cast<std::uint64_t>(report.failed_solves);

@@ -13,6 +13,7 @@
 #include "nav/api/estimate.h"
 #include "nav/api/time.h"
 #include "sim/truth.h"
+#include "tools/testbed/diagnostics.h"
 #include "tools/testbed/pose_errors.h"
 
 namespace polnav::testbed {
@@ -27,7 +28,8 @@ struct OutcomeCounts {
   std::uint64_t features = 0;  // offered
   std::uint64_t inliers = 0;
   std::uint64_t flow_rejected = 0;  // moved otherwise than the scene [Chu2021, eq. 12]
-
+  std::uint64_t pose_rejected = 0;  // outliers of the pose
+  std::uint64_t map_rejected = 0;   // landmarks that the bundle adjustment took out
   std::uint64_t gated_readings = 0;
   std::uint64_t returns = 0;  // places recognized
   std::uint64_t failed_solves = 0;
@@ -41,6 +43,7 @@ struct EstimatorRun {
   std::vector<nav::Estimate> estimates;  // in order of stamps
   std::string sha256;                    // of the estimates
   OutcomeCounts counts;
+  Diagnostics diagnostics;
   // How the estimates were moved onto the truth before they are judged; see AlignToTruth.
   Alignment alignment = Alignment::kNone;
 };

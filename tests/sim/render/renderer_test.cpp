@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <thread>
 
+#include "sim/render/gl_context.h"
 #include "tests/sim/render/marker_scene.h"
 
 namespace polnav::sim {
@@ -135,6 +139,20 @@ TEST(Renderer, GivesTheSameBytesInAnyThreadAndAgain) {
   EXPECT_EQ(cv::norm(first[0], first[1], cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(first[0], again[0], cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(first[1], again[1], cv::NORM_INF), 0.0);
+}
+
+// See gl_context.h, and renderer_threads_test for what happens without.
+TEST(Renderer, WaitsForItsTurn) {
+  auto others_turn = std::make_unique<GlTurn>();
+  cv::Mat image;
+  std::future<void> drawn = std::async(std::launch::async, [&] {
+    Renderer(BlackRoom(), TestSky(), kView).Render({.exposure = kExposure}, image);
+  });
+  // Several times what it takes alone; on a slow machine this proves less, but never fails wrongly.
+  EXPECT_EQ(drawn.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
+  others_turn.reset();
+  drawn.get();
+  EXPECT_FALSE(image.empty());
 }
 
 }  // namespace

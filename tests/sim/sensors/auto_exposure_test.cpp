@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "sim/measurement_stream.h"
+#include "sim/sensors/stereo_camera.h"
 #include "tests/sim/render/marker_scene.h"
 
 namespace polnav::sim {
@@ -50,41 +50,6 @@ TEST(AutoExposure, RecoversTheMeanGreyWithinItsTimeConstant) {
     const double log_error = std::log(0.25) * std::exp(-since_s / 0.5);
     EXPECT_NEAR(mean, target * std::exp(log_error), kTolerance * target) << since_s;
   }
-}
-
-SimulatorOptions SmallOptions(bool auto_exposure) {
-  SimulatorOptions options;
-  options.world.plaza = {
-      .tree_count = 3, .lamp_count = 3, .parked_car_count = 2, .furniture_count = 3};
-  options.sensors.stereo = StereoCameraOptions{
-      .width_px = 160, .height_px = 96, .focal_px = 90.0, .auto_exposure = auto_exposure};
-  return options;
-}
-
-std::vector<cv::Mat> LeftPictures(const SimulatorOptions& options, int render_threads) {
-  std::vector<cv::Mat> pictures;
-  MeasurementStream stream(options, {1, 0}, nav::FromSeconds(1.0), render_threads);
-  while (const auto item = stream.Next()) {
-    const auto* measurement = std::get_if<nav::Measurement>(&*item);
-    if (measurement == nullptr) continue;
-    if (const auto* pair = std::get_if<nav::StereoImages>(measurement)) {
-      pictures.push_back(pair->left);
-    }
-  }
-  return pictures;
-}
-
-// The exposure of a picture depends on those before it, whoever takes them.
-TEST(AutoExposure, GivesTheSameBytesWithOneAndTwoRenderThreads) {
-  const std::vector<cv::Mat> one = LeftPictures(SmallOptions(true), 1);
-  const std::vector<cv::Mat> two = LeftPictures(SmallOptions(true), 2);
-  ASSERT_EQ(one.size(), 11U);
-  ASSERT_EQ(two.size(), 11U);
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(cv::norm(one[i], two[i], cv::NORM_INF), 0.0) << i;
-  }
-  const std::vector<cv::Mat> fixed = LeftPictures(SmallOptions(false), 1);
-  EXPECT_GT(cv::norm(one[5], fixed[5], cv::NORM_INF), 0.0) << "the exposure is its own";
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "tools/testbed/report.h"
+#include "tools/testbed/report/diagnostic_data.h"
+#include "tools/testbed/report/disturbed_times.h"
 #include "tools/testbed/score.h"
 #include "tools/testbed/trajectory.h"
 
@@ -63,6 +65,8 @@ Json EstimatorData(const EstimatorRun& run, const Trajectory& truth) {
     data["position"] = {{"t", Picked(series.t_s, position)},
                         {"error", Picked(series.position_m, position)}};
   }
+  data["nees"] = NeesData(series);
+  data["inside"] = DiagnosticData(run.diagnostics);
   return data;
 }
 
@@ -84,6 +88,12 @@ Json MemoryData(const RunRecord& record) {
   for (std::size_t i = 0; i < n; ++i) t_s[i] = static_cast<double>(i) * step_s;
   const std::vector<std::size_t> indices = Thin(record.rss_mb, kMaxPoints);
   return {{"t", Picked(t_s, indices)}, {"mb", Picked(record.rss_mb, indices)}};
+}
+
+Json StretchData(const std::vector<Stretch>& stretches) {
+  Json list = Json::array();
+  for (const Stretch& s : stretches) list.push_back({{"begin", s.begin_s}, {"end", s.end_s}});
+  return list;
 }
 
 }  // namespace
@@ -112,7 +122,7 @@ std::vector<std::size_t> Thin(const std::vector<double>& values, std::size_t max
   return indices;
 }
 
-Json ChartData(const RunRecord& record, const std::vector<sim::FaultOptions>& faults) {
+Json ChartData(const RunRecord& record, const Scenario& scenario) {
   const Trajectory truth = TrajectoryOf(record.truth);
   Json data;
   data["end_s"] = record.sim_duration_s;
@@ -123,12 +133,8 @@ Json ChartData(const RunRecord& record, const std::vector<sim::FaultOptions>& fa
   }
   data["readings"] = ReadingData(record.polarization_readings);
   data["memory"] = MemoryData(record);
-  data["faults"] = Json::array();
-  for (const sim::FaultOptions& fault : faults) {
-    const double end_s =
-        fault.duration_s ? fault.start_s + *fault.duration_s : data["end_s"].get<double>();
-    data["faults"].push_back({{"begin", fault.start_s}, {"end", end_s}});
-  }
+  data["faults"] = StretchData(FaultTimes(scenario.faults, record.sim_duration_s));
+  data["disturbances"] = StretchData(DisturbedTimes(scenario, record.truth));
   return data;
 }
 

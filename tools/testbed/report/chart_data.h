@@ -1,13 +1,13 @@
 // What do the report's charts draw? One object, thinned, in metres, degrees and seconds.
 #pragma once
 
-#include "sim/faults/fault_options.h"
 #include "tools/testbed/option_tree.h"
 #include "tools/testbed/run_record.h"
+#include "tools/testbed/scenario.h"
 
 namespace polnav::testbed {
 
-[[nodiscard]] Json ChartData(const RunRecord& record,
-                             const std::vector<sim::FaultOptions>& faults = {});
+// Of the scenario: what was disturbed, and when.
+[[nodiscard]] Json ChartData(const RunRecord& record, const Scenario& scenario);
 
 }  // namespace polnav::testbed

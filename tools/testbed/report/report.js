@@ -35,7 +35,8 @@
       options: {
         animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
         interaction: { mode: "nearest", intersect: false },
-        scales: { x: axis(x, extra && extra.x), y: axis(y, extra && extra.y) },
+        scales: Object.assign({ x: axis(x, extra && extra.x), y: axis(y, extra && extra.y) },
+                              extra && extra.right && { right: extra.right }),
         plugins: {
           legend: {
             labels: {
@@ -81,18 +82,22 @@
     },
   };
 
-  // Where a sensor was at fault, behind the lines; darker where faults overlap.
-  const faultBands = {
-    id: "faultBands",
+  // Where a sensor was at fault or the world disturbed, behind the lines; darker where both.
+  const disturbedBands = {
+    id: "disturbedBands",
     beforeDatasetsDraw(chart) {
       const { left, right, top, bottom } = chart.chartArea;
+      const shade = (stretches, fill) => {
+        chart.ctx.fillStyle = fill;
+        for (const s of stretches) {
+          const from = Math.max(left, chart.scales.x.getPixelForValue(s.begin));
+          const to = Math.min(right, chart.scales.x.getPixelForValue(s.end));
+          if (to > from) chart.ctx.fillRect(from, top, to - from, bottom - top);
+        }
+      };
       chart.ctx.save();
-      chart.ctx.fillStyle = faint("--soft", 0.13);
-      for (const fault of run.faults) {
-        const from = Math.max(left, chart.scales.x.getPixelForValue(fault.begin));
-        const to = Math.min(right, chart.scales.x.getPixelForValue(fault.end));
-        if (to > from) chart.ctx.fillRect(from, top, to - from, bottom - top);
-      }
+      shade(run.disturbances, faint("--paper", 0.13));
+      shade(run.faults, faint("--soft", 0.13));
       chart.ctx.restore();
     },
   };
@@ -125,7 +130,7 @@
     });
     if (top === 0) top = 1;
     draw("heading", sets, "time [s]", "heading error [\u00b0]",
-         { y: { min: -top, max: top }, x: wholeRun, plugins: [faultBands] });
+         { y: { min: -top, max: top }, x: wholeRun, plugins: [disturbedBands] });
   }
 
   function drawPosition() {
@@ -135,7 +140,7 @@
       sets.push(line(e.name, points(e.position.t, e.position.error), color(slot(i))));
     });
     draw("position", sets, "time [s]", "position error [m]",
-         { y: { beginAtZero: true }, x: wholeRun, plugins: [faultBands] });
+         { y: { beginAtZero: true }, x: wholeRun, plugins: [disturbedBands] });
   }
 
   function drawReadings() {
@@ -143,12 +148,68 @@
                        color("--paper"),
                        { showLine: false, pointRadius: 1.4, borderWidth: 0 })];
     draw("readings", sets, "time [s]", "heading error [\u00b0]",
-         { x: wholeRun, plugins: [faultBands] });
+         { x: wholeRun, plugins: [disturbedBands] });
   }
 
   function drawMemory() {
     draw("memory", [line("resident memory", points(run.memory.t, run.memory.mb), color("--c2"))],
          "time [s]", "MB", { y: { beginAtZero: true }, x: wholeRun });
+  }
+
+  const over = (label, series, stroke, extra) =>
+    line(label, points(series.t, series.v), stroke, extra);
+
+  // On a logarithmic axis; dashed: what an honest covariance exceeds one time in twenty.
+  function drawNees(id, of, title, limit) {
+    const lifted = (series) => ({ t: series.t, v: series.v.map((v) => Math.max(v, 1e-3)) });
+    const sets = [];
+    run.estimators.forEach((e, i) => {
+      if (e.nees[of]) sets.push(over(e.name, lifted(e.nees[of]), color(slot(i))));
+    });
+    sets.push(line("95 %", points([0, run.end_s], [limit, limit]), color("--soft"),
+                   { borderDash: [6, 4] }));
+    draw(id, sets, "time [s]", title,
+         { y: { type: "logarithmic", min: 1e-3 }, x: wholeRun, plugins: [disturbedBands] });
+  }
+
+  function drawVision() {
+    const inside = run.estimators.map((e, i) => ({ e, i })).filter(({ e }) => e.inside);
+    if (!inside.length) return;
+    const offered =
+      over("offered", inside[0].e.inside.offered, color("--soft"), { borderWidth: 1 });
+    const inliers = inside.map(({ e, i }) => over(e.name, e.inside.inliers, color(slot(i))));
+    draw("features", [...inliers, offered], "time [s]", "points",
+         { y: { beginAtZero: true }, x: wholeRun, plugins: [disturbedBands] });
+    draw("vision-nis", inside.map(({ e, i }) => over(e.name, e.inside.nis, color(slot(i)))),
+         "time [s]", "chi\u00b2 / degrees of freedom",
+         { y: { beginAtZero: true }, x: wholeRun, plugins: [disturbedBands] });
+    inside.forEach(({ e, i }) => {
+      draw("rejected-" + i,
+           [over("flow", e.inside.flow, color("--c0")), over("pose", e.inside.pose, color("--c1")),
+            over("map", e.inside.map, color("--c3"))],
+           "time [s]", "points",
+           { y: { beginAtZero: true }, x: wholeRun, plugins: [disturbedBands] });
+      draw("window-" + i,
+           [over("landmarks", e.inside.landmarks, color("--c1")),
+            over("keyframes", e.inside.keyframes, color("--c2"), { yAxisID: "right" })],
+           "time [s]", "landmarks",
+           { y: { beginAtZero: true }, x: wholeRun, plugins: [disturbedBands],
+             right: axis("keyframes", { position: "right", beginAtZero: true,
+                                        grid: { drawOnChartArea: false } }) });
+      if (e.inside.sky) drawSky("sky-" + i, e.inside.sky);
+    });
+  }
+
+  function drawSky(id, sky) {
+    const dots = { showLine: false, pointRadius: 1.4, borderWidth: 0 };
+    const bound = (sign) => points(sky.sigma.t, sky.sigma.v.map((s) => sign * 3 * s));
+    draw(id,
+         [over("used", sky.used, color("--c1"), dots),
+          over("gated", sky.gated, color("--fail"), { ...dots, pointRadius: 2 }),
+          line("", bound(1), "transparent",
+               { fill: "+1", backgroundColor: faint("--c1", 0.16), band: true, borderWidth: 0 }),
+          line("", bound(-1), "transparent", { band: true, borderWidth: 0 })],
+         "time [s]", "heading residual [\u00b0]", { x: wholeRun, plugins: [disturbedBands] });
   }
 
   function drawAll() {
@@ -158,6 +219,9 @@
     drawPosition();
     drawReadings();
     drawMemory();
+    drawNees("nees-heading", "heading", "NEES", 3.84);
+    drawNees("nees-position", "position", "NEES", 7.81);
+    drawVision();
   }
 
   drawAll();

@@ -33,14 +33,6 @@ std::string Figure(const std::string& value, const std::string& label) {
                      EscapeMarkup(label));
 }
 
-std::string Chart(const std::string& id, const std::string& title, const std::string& note,
-                  const std::string& shape = "chart") {
-  return fmt::format(
-      "<section><h2>{}</h2><div class=\"{}\"><canvas id=\"{}\"></canvas></div>"
-      "<p class=\"soft small\">{}</p></section>",
-      title, shape, id, note);
-}
-
 std::string SunText(const sky::SiteOptions& site) {
   const std::optional<sky::UtcDate> utc = sky::ParseUtc(site.utc);
   if (!utc) return "–";
@@ -92,6 +84,14 @@ std::string HtmlTable::Html() const {
   return html + (rows.size() > 1 ? "</tbody></table></div>" : "</table></div>");
 }
 
+std::string ChartCard(const std::string& id, const std::string& title, const std::string& note,
+                      const std::string& shape) {
+  return fmt::format(
+      "<section><h2>{}</h2><div class=\"{}\"><canvas id=\"{}\"></canvas></div>"
+      "<p class=\"soft small\">{}</p></section>",
+      title, shape, id, note);
+}
+
 std::string HeaderSection(const ReportInput& input) {
   const Scenario& s = input.scenario;
   std::string verdict;
@@ -120,29 +120,31 @@ bool HasPositions(const ReportInput& input) {
 }
 
 std::string ChartSections(const ReportInput& input) {
-  const std::string heading =
-      Chart("heading", "Heading error over time",
-            "Estimate minus truth; shaded: three sigma as the estimator claims.");
+  const std::string heading = ChartCard(
+      "heading", "Heading error over time",
+      "Estimate minus truth; shaded: three sigma as the estimator claims." +
+          std::string(input.scenario.disturbances.empty() ? "" : " Purple stretches: disturbed."));
   std::string html;
   if (input.record.estimators.empty() || HasPositions(input)) {
     const std::string alignment = AlignmentText(input.record);
-    html = "<div class=\"columns\">" + Chart("trajectory", "Trajectory",
-                                             "Seen from above, equal axes, " + alignment + ".",
-                                             "chart square");
+    html = "<div class=\"columns\">" + ChartCard("trajectory", "Trajectory",
+                                                 "Seen from above, equal axes, " + alignment + ".",
+                                                 "chart square");
     if (input.record.estimators.empty() || input.record.truth.empty()) return html + "</div>";
-    html += "<div>" + heading +
-            Chart("position", "Position error over time", "Three-dimensional, " + alignment + ".") +
-            "</div></div>";
+    html +=
+        "<div>" + heading +
+        ChartCard("position", "Position error over time", "Three-dimensional, " + alignment + ".") +
+        "</div></div>";
   } else {
     html = heading;
   }
   html += "<div class=\"columns\">";
   if (!input.record.polarization_readings.empty()) {
-    html += Chart("readings", "Single polarization readings",
-                  "The heading that one sample alone would give, against the truth.");
+    html += ChartCard("readings", "Single polarization readings",
+                      "The heading that one sample alone would give, against the truth.");
   }
   if (!input.record.rss_mb.empty()) {
-    html += Chart("memory", "Memory", "Of the whole process.");
+    html += ChartCard("memory", "Memory", "Of the whole process.");
   }
   return html + "</div>";
 }
@@ -159,7 +161,7 @@ std::string FaultSection(const ReportInput& input) {
          SettingText(OptionValues(fault)[kind])});
   }
   return "<section><h2>Faults</h2>" + table.Html() +
-         "<p class=\"soft small\">Shaded in the charts over time.</p></section>";
+         "<p class=\"soft small\">Shaded grey in the charts over time.</p></section>";
 }
 
 std::string PictureSection(const ReportInput& input) {

@@ -16,12 +16,17 @@ namespace polnav::testbed {
 
 [[nodiscard]] std::string HeaderSection(const ReportInput& input);
 [[nodiscard]] std::string ChartSections(const ReportInput& input);
+[[nodiscard]] std::string DiagnosticSections(const ReportInput& input);
 [[nodiscard]] std::string ErrorSections(const ReportInput& input);
 [[nodiscard]] std::string CriteriaSection(const ReportInput& input);
 [[nodiscard]] std::string FaultSection(const ReportInput& input);  // empty without faults
 [[nodiscard]] std::string PictureSection(const ReportInput& input);
 [[nodiscard]] std::string TimingAndStreamSections(const ReportInput& input);
 [[nodiscard]] std::string AgainSection(const ReportInput& input);  // how to run it again
+
+// A card with a canvas; nothing is escaped.
+[[nodiscard]] std::string ChartCard(const std::string& id, const std::string& title,
+                                    const std::string& note, const std::string& shape = "chart");
 
 // Cells are escaped; the first row is the header. row_class: of each row after it, may be short.
 struct HtmlTable {
