@@ -12,10 +12,6 @@ namespace {
 // does not make its 3x3 block singular: 1 / (1000 1/m)^2, nothing beside a single disparity.
 constexpr double kFreeInformation = 1e-6;
 
-// Beyond, the IMU's word counts for less: a fault, not noise. Expected are 1.7 (attitude) and 2.4
-// (velocity and position).
-constexpr double kInertialHuberSigmas = 4.0;
-
 // Huber's factor on residual and Jacobian; adds the loss to the cost.
 double RobustScale(double norm, double huber_sigmas, double& cost) {
   if (norm <= huber_sigmas) {
@@ -26,12 +22,24 @@ double RobustScale(double norm, double huber_sigmas, double& cost) {
   return std::sqrt(huber_sigmas / norm);
 }
 
-// Factors on the rows of an inertial residual.
-Vector15d InertialScales(const Vector15d& residual, double& cost) {
+// Cauchy's, likewise: what is far off counts for nothing.
+double RedescendingScale(double norm, double sigmas, double& cost) {
+  const double ratio2 = norm * norm / (sigmas * sigmas);
+  cost += 0.5 * sigmas * sigmas * std::log1p(ratio2);
+  return 1.0 / std::sqrt(1.0 + ratio2);
+}
+
+// Beyond, the IMU's word counts for less: a fault, not noise. Expected are 1.7 (attitude) and 2.4
+// (velocity and position).
+constexpr double kInertialSigmas = 4.0;
+
+// Factors on the rows of an inertial residual. While level and velocity are still being found a
+// large residual is the state's; afterwards it is a sensor's that has gone wrong.
+Vector15d InertialScales(const InertialEdge& edge, const Vector15d& residual, double& cost) {
+  const auto scale = edge.settled ? RedescendingScale : RobustScale;
   Vector15d scales = Vector15d::Ones();
-  scales.head<3>().setConstant(RobustScale(residual.head<3>().norm(), kInertialHuberSigmas, cost));
-  scales.segment<6>(3).setConstant(
-      RobustScale(residual.segment<6>(3).norm(), kInertialHuberSigmas, cost));
+  scales.head<3>().setConstant(scale(residual.head<3>().norm(), kInertialSigmas, cost));
+  scales.segment<6>(3).setConstant(scale(residual.segment<6>(3).norm(), kInertialSigmas, cost));
   cost += 0.5 * residual.tail<6>().squaredNorm();
   return scales;
 }
@@ -95,7 +103,7 @@ void NormalEquations::AddInertial(const Window& window, std::size_t i) {
   const Keyframe& before = window.keyframes[i - 1];
   const InertialResidual e = EvaluateInertial(*keyframe.inertial, before.T_WB, before.motion,
                                               keyframe.T_WB, keyframe.motion);
-  const Vector15d scales = InertialScales(e.residual, cost_);
+  const Vector15d scales = InertialScales(*keyframe.inertial, e.residual, cost_);
   Eigen::Matrix<double, 15, 30> J;
   J << e.by_pose_i, e.by_pose_j, e.by_motion_i, e.by_motion_j;
   J = scales.asDiagonal() * J;

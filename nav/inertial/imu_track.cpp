@@ -10,6 +10,9 @@ namespace {
 // Longer than a bump, shorter than a turn.
 constexpr double kSlow_s = 3.0;
 
+constexpr double kSettledTilt_rad = 0.005;
+constexpr double kSettledSpeed_m_s = 0.5;
+
 }  // namespace
 
 ImuTrack::ImuTrack(const ImuCalibration& calibration, const InertialOptions& options)
@@ -36,15 +39,16 @@ std::optional<InertialPrediction> ImuTrack::Predict(const Keyframe& keyframe,
 }
 
 void ImuTrack::Connect(const Motion& before, const Matrix15d& covariance, Keyframe& keyframe) {
+  const auto sigma = [&](Eigen::Index at) {
+    return std::sqrt(covariance.diagonal().segment<2>(at).maxCoeff());
+  };
   if (complete_) {
     keyframe.inertial = MakeInertialEdge(sum_, WalkSinceKeyframe(), T_BI_);
+    keyframe.inertial->settled = sigma(3) < kSettledTilt_rad && sigma(6) < kSettledSpeed_m_s;
     return;
   }
   const Motion unmoved{
       .v_WI = keyframe.motion.v_WI, .gyro_bias = before.gyro_bias, .accel_bias = before.accel_bias};
-  const auto sigma = [&](Eigen::Index at) {
-    return std::sqrt(covariance.diagonal().segment<3>(at).maxCoeff());
-  };
   keyframe.motion_prior = {unmoved, {options_.start_speed_sigma_m_s, sigma(9), sigma(12)}};
 }
 

@@ -23,6 +23,7 @@ struct InertialEdge {
   Matrix9d weight = Matrix9d::Zero();  // lower triangular square root of the information
   double gyro_walk_weight = 0.0;       // one over sigma
   double accel_walk_weight = 0.0;
+  bool settled = false;  // level and velocity were known where it begins
 };
 
 // What a bias may change by from one keyframe to the next, one sigma.
