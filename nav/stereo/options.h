@@ -6,8 +6,31 @@
 
 namespace polnav::nav {
 
+// What a calibration misses of the pair's zero of disparity; see nav/stereo/disparity_zero.h.
+struct DisparityZeroOptions {
+  // What calibrations miss, one sigma. 0: they are right, and nothing is estimated.
+  double sigma_px = 0.1;
+  // What all answers get wrong alike, because lens and tracking depart from their models; as much
+  // as that, where nobody knows better. Larger trusts the calibration more.
+  double systematic_px = 0.1;
+  double drift_px = 0.003;      // of z from one pair of frames to the next
+  double point_sigma_px = 0.3;  // of a followed point, and of a disparity
+  double flow_px = 6.0;         // median motion between the two frames of a pair
+  int min_points = 30;          // seen in both
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("sigma_px", sigma_px, {.min = 0.0, .max = 5.0});
+    v("drift_px", drift_px, {.min = 0.0, .max = 1.0});
+    v("systematic_px", systematic_px, {.min = 0.0, .max = 5.0});
+    v("point_sigma_px", point_sigma_px, {.min = 0.01, .max = 5.0});
+    v("flow_px", flow_px, {.min = 0.5, .max = 100.0});
+    v("min_points", min_points, {.min = 8, .max = 1000});
+  }
+};
+
 // The front end: corners spread over the image, followed by Lucas-Kanade in the left image and
-// across to the right one, checked both ways.
+// matched along its row of the right one, both checked both ways.
 struct TrackerOptions {
   int max_features = 300;  // more: steadier and slower
   int grid_columns = 16;   // the image is cut into cells that share the features evenly
@@ -26,8 +49,10 @@ struct TrackerOptions {
   double reference_scale = 1.25;
   double reference_px = 1.0;
   double forward_backward_px = 0.6;  // a track must come back to where it was
-  double epipolar_px = 1.2;          // a stereo match must lie on its row in the rectified pair
+  double epipolar_px = 1.2;          // rows of left and right may differ by, where no pictures are
+  double stereo_correlation = 0.8;   // of the two patches of a stereo match; higher: fewer, surer
   double max_disparity_px = 120.0;
+  DisparityZeroOptions zero;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -43,7 +68,9 @@ struct TrackerOptions {
     v("reference_px", reference_px, {.min = 0.0, .max = 10.0});
     v("forward_backward_px", forward_backward_px, {.min = 0.05, .max = 10.0});
     v("epipolar_px", epipolar_px, {.min = 0.1, .max = 10.0});
+    v("stereo_correlation", stereo_correlation, {.min = 0.0, .max = 1.0});
     v("max_disparity_px", max_disparity_px, {.min = 1.0, .max = 1000.0});
+    v("zero", zero);
   }
 };
 

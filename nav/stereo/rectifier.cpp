@@ -1,6 +1,7 @@
 #include "nav/stereo/rectifier.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 
 namespace polnav::nav {
@@ -19,6 +20,24 @@ Eigen::Matrix3d VirtualAxes(const CameraCalibration& left, const CameraCalibrati
   Eigen::Matrix3d R_BC;
   R_BC << x, y, x.cross(y);
   return R_BC;
+}
+
+// [Brown1971] in OpenCV's order k1 k2 p1 p2.
+cv::Point2d BendRadTan(const cv::Vec4d& k, const cv::Point2d& p) {
+  const double r2 = p.dot(p);
+  const double radial = 1.0 + r2 * (k[0] + r2 * k[1]);
+  return {p.x * radial + 2.0 * k[2] * p.x * p.y + k[3] * (r2 + 2.0 * p.x * p.x),
+          p.y * radial + k[2] * (r2 + 2.0 * p.y * p.y) + 2.0 * k[3] * p.x * p.y};
+}
+
+// [Kannala2006, eq. 6].
+cv::Point2d BendEquidistant(const cv::Vec4d& k, const cv::Point2d& p) {
+  const double r = std::sqrt(p.dot(p));
+  if (r < 1e-9) return p;
+  const double theta = std::atan(r);
+  const double t2 = theta * theta;
+  const double bent = theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+  return p * (bent / r);
 }
 
 }  // namespace
@@ -66,6 +85,18 @@ std::vector<cv::Point2f> StereoRectifier::RectifyLeft(const std::vector<cv::Poin
 
 std::vector<cv::Point2f> StereoRectifier::RectifyRight(const std::vector<cv::Point2f>& raw) const {
   return Rectify(right_, raw);
+}
+
+cv::Point2f StereoRectifier::RawRight(const cv::Point2f& rectified) const {
+  const cv::Vec3d virtual_ray((rectified.x - camera_.cx_px) / camera_.f_px,
+                              (rectified.y - camera_.cy_px) / camera_.f_px, 1.0);
+  const cv::Vec3d ray = right_.rotation.t() * virtual_ray;
+  const cv::Point2d straight(ray[0] / ray[2], ray[1] / ray[2]);
+  const cv::Point2d bent = right_.model == DistortionModel::kEquidistant
+                               ? BendEquidistant(right_.distortion, straight)
+                               : BendRadTan(right_.distortion, straight);
+  return {static_cast<float>(right_.intrinsics(0, 0) * bent.x + right_.intrinsics(0, 2)),
+          static_cast<float>(right_.intrinsics(1, 1) * bent.y + right_.intrinsics(1, 2))};
 }
 
 }  // namespace polnav::nav

@@ -30,6 +30,9 @@ class StereoRectifier {
   [[nodiscard]] std::vector<cv::Point2f> RectifyLeft(const std::vector<cv::Point2f>& raw) const;
   [[nodiscard]] std::vector<cv::Point2f> RectifyRight(const std::vector<cv::Point2f>& raw) const;
 
+  // The way back: where the real right camera sees what the virtual one sees there.
+  [[nodiscard]] cv::Point2f RawRight(const cv::Point2f& rectified) const;
+
  private:
   struct Side {
     DistortionModel model = DistortionModel::kRadTan;

@@ -58,5 +58,23 @@ TEST(StereoRectifier, MakesAPinholePairOfTwoFisheyes) {
   }
 }
 
+// There and back again: what single precision and the inverse distortion leave.
+TEST(StereoRectifier, RawRightUndoesRectifyRight) {
+  StereoCalibration radtan = Fisheyes();
+  for (CameraCalibration* c : {&radtan.left, &radtan.right}) {
+    c->model = DistortionModel::kRadTan;
+    c->distortion = {-0.17, 0.025, 3e-4, -2e-4};
+  }
+  for (const StereoCalibration& calibration : {Fisheyes(), radtan}) {
+    const StereoRectifier rectifier(calibration);
+    for (const cv::Point2f raw :
+         {cv::Point2f(335.0F, 188.0F), cv::Point2f(60.5F, 40.25F), cv::Point2f(600.0F, 340.0F)}) {
+      const cv::Point2f back = rectifier.RawRight(rectifier.RectifyRight({raw}).front());
+      EXPECT_NEAR(back.x, raw.x, 2e-3);
+      EXPECT_NEAR(back.y, raw.y, 2e-3);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace polnav::nav

@@ -7,42 +7,13 @@
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
+#include "tests/nav/spot_texture.h"
 #include "tests/nav/synthetic_street.h"
 
 namespace polnav::nav {
 namespace {
 
-// Random light and dark Gaussian spots, evaluated at the shifted pixels themselves: interpolating
-// one picture to make the other would move it by up to 0.05 px more than asked.
-cv::Mat Texture(double shift_x, double shift_y) {
-  constexpr float kSigma_px = 2.5F;
-  constexpr int kReach_px = 10;
-  cv::RNG random(11);
-  cv::Mat sum = cv::Mat::zeros(376, 672, CV_32FC1);
-  for (int spot = 0; spot < 20000; ++spot) {
-    const double x = random.uniform(-30.0, 702.0) + shift_x;
-    const double y = random.uniform(-30.0, 406.0) + shift_y;
-    const auto strength = static_cast<float>(random.gaussian(1.0));
-    const cv::Rect around = cv::Rect(static_cast<int>(std::floor(x)) - kReach_px,
-                                     static_cast<int>(std::floor(y)) - kReach_px, 2 * kReach_px + 2,
-                                     2 * kReach_px + 2) &
-                            cv::Rect(0, 0, sum.cols, sum.rows);
-    const auto bell = [&](double distance) {
-      return std::exp(-0.5F * static_cast<float>(distance * distance) / (kSigma_px * kSigma_px));
-    };
-    std::vector<float> across;
-    for (int col = around.x; col < around.x + around.width; ++col) across.push_back(bell(col - x));
-    for (int row = around.y; row < around.y + around.height; ++row) {
-      const float down = strength * bell(row - y);
-      for (int i = 0; i < around.width; ++i) {
-        sum.at<float>(row, around.x + i) += down * across[static_cast<std::size_t>(i)];
-      }
-    }
-  }
-  cv::Mat grey;
-  sum.convertTo(grey, CV_8UC1, 127.0 / 5.0, 127.5);  // spots overlap: one sigma is about 1.5
-  return grey;
-}
+cv::Mat Texture(double shift_x, double shift_y) { return SpotTexture(shift_x, shift_y); }
 
 std::map<std::uint64_t, FeatureObservation> ById(const StereoFeatures& features) {
   std::map<std::uint64_t, FeatureObservation> by_id;
@@ -100,10 +71,30 @@ TEST(StereoTracker, AcceptsNoHalvesNothingLateAndNoPictureTwice) {
   EXPECT_TRUE(tracker.Accepts({20, b, b}));
 }
 
-TEST(StereoTracker, ImagesOfAnotherKindAreABrokenContract) {
+// Broken drivers and wires: refused before anything is touched, and the run goes on after them.
+TEST(StereoTracker, RefusesPairsThatAreNotOfTheCalibrationsSize) {
   StereoTracker tracker({}, TestCalibration());
+  const cv::Mat good = Texture(0.0, 0.0);
+  const cv::Mat half(188, 336, CV_8UC1, cv::Scalar(90));
   const cv::Mat colour(376, 672, CV_8UC3, cv::Scalar(1, 2, 3));
-  EXPECT_THROW((void)tracker.Track({0, colour, colour}), std::logic_error);
+  const cv::Mat deep(376, 672, CV_16UC1, cv::Scalar(300));
+  EXPECT_FALSE(tracker.Accepts({0, good, half})) << "left and right differ";
+  EXPECT_FALSE(tracker.Accepts({0, half, half})) << "not what was calibrated";
+  EXPECT_FALSE(tracker.Accepts({0, colour, colour}));
+  EXPECT_FALSE(tracker.Accepts({0, deep, deep}));
+  EXPECT_FALSE(tracker.Accepts({0, cv::Mat(), cv::Mat()}));
+  EXPECT_THROW((void)tracker.Track({0, half, half}), std::logic_error) << "a broken contract";
+  EXPECT_TRUE(tracker.Accepts({0, good, good}));
+}
+
+TEST(StereoTracker, BlackAndWhitePicturesHaveNoFeaturesAndSightComesBack) {
+  StereoTracker tracker({}, TestCalibration());
+  const auto plain = [](int grey) { return cv::Mat(376, 672, CV_8UC1, cv::Scalar(grey)); };
+  const StereoImages seen{0, Texture(0, 0), Texture(-7, 0)};
+  EXPECT_GT(tracker.Track(seen).features.size(), 100U);
+  EXPECT_TRUE(tracker.Track({1, plain(0), plain(0)}).features.empty());
+  EXPECT_TRUE(tracker.Track({2, plain(255), plain(255)}).features.empty());
+  EXPECT_GT(tracker.Track({3, seen.left, seen.right}).features.size(), 100U);
 }
 
 // A point far from the axis of a distorted, slightly turned pair: its rectified pixels must obey
