@@ -16,6 +16,11 @@ namespace {
 constexpr double kCoastSpeedSigma_m_s = 0.5;
 constexpr double kCoastRateSigma_rad_s = 0.05;
 
+// What a frame may show besides what the IMU expects, however sure it is of itself: a reading that
+// has gone wrong is found out by the pictures only if they are not held against it too narrowly.
+constexpr double kImuSpeedSigma_m_s = 0.1;
+constexpr double kImuRateSigma_rad_s = 0.01;
+
 constexpr std::size_t kFirstKeyframes = 4;
 constexpr double kFirstKeyframeInterval_s = 0.25;
 
@@ -26,11 +31,9 @@ Matrix6d StartCovariance(const StartPrior& start) {
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
-// What constant velocity misses within dt, of (dp, dtheta).
-Matrix6d MotionCovariance(double dt_s) {
+Matrix6d MotionCovariance(double position_m, double angle_rad) {
   Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << Eigen::Vector3d::Constant(kCoastSpeedSigma_m_s * dt_s),
-      Eigen::Vector3d::Constant(kCoastRateSigma_rad_s * dt_s);
+  sigmas << Eigen::Vector3d::Constant(position_m), Eigen::Vector3d::Constant(angle_rad);
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
@@ -80,7 +83,8 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const TimeNs before = starting ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Expectation expected = Expect(features.stamp);
-  const std::vector<LandmarkView> views = RejectMoving(MatchLandmarks(features), expected, report);
+  const std::vector<LandmarkView> views =
+      RejectMoving(MatchLandmarks(window_, features), expected, report);
   const auto solution = SolvePose(camera_, views, expected.pose.T_WB, solver_, options_.min_inliers,
                                   step_ > 0 ? std::optional(expected.pose) : std::nullopt);
   if (solution) Follow(*solution, expected, views);
@@ -106,7 +110,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
     OptimizeWindow(features, report);
   }
   if (!solution && !starting) report.outcome = Outcome::kUnusable;
-  ForgetRejected(features);
+  rejected_.KeepOnly(features);
   report.window_keyframes = static_cast<int>(window_.keyframes.size());
   report.window_landmarks = static_cast<int>(window_.landmarks.size());
   report.estimate = Answer(solution.has_value() || starting);
@@ -130,7 +134,8 @@ StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
   if (imu_) {
     imu_->Advance(stamp);
     if (const auto p = imu_->Predict(window_.keyframes.back(), state_covariance_)) {
-      const Matrix6d pose = p->covariance.topLeftCorner<6, 6>();
+      const Matrix6d pose = p->covariance.topLeftCorner<6, 6>() +
+                            MotionCovariance(kImuSpeedSigma_m_s * dt, kImuRateSigma_rad_s * dt);
       const Eigen::Matrix<double, 3, 6> by_pose =
           Eigen::LDLT<Matrix6d>(pose).solve(p->covariance.topRightCorner<6, 3>()).transpose();
       return {.pose = {p->T_WB, pose}, .by_imu = true, .v_WI = p->v_WI, .v_by_pose = by_pose};
@@ -138,21 +143,8 @@ StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
   }
   const double ratio = step_ > 0 ? dt / ToSeconds(step_) : 0.0;
   const Pose motion{ExpRotation(ratio * LogRotation(motion_.q)), ratio * motion_.p};
-  return {.pose = {T_WB_ * motion, MotionCovariance(dt)}};
-}
-
-std::vector<LandmarkView> StereoEstimator::MatchLandmarks(const StereoFeatures& features) const {
-  std::vector<LandmarkView> views;
-  for (const FeatureObservation& f : features.features) {
-    const auto found = window_.landmarks.find(f.id);
-    if (found == window_.landmarks.end()) continue;
-    const Keyframe& host = window_.keyframes[IndexOf(window_, found->second.host)];
-    views.push_back({.id = f.id,
-                     .T_WBh = &host.T_WB,
-                     .landmark = found->second.coordinates,
-                     .pixel = PixelOf(f)});
-  }
-  return views;
+  return {.pose = {T_WB_ * motion,
+                   MotionCovariance(kCoastSpeedSigma_m_s * dt, kCoastRateSigma_rad_s * dt)}};
 }
 
 std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<LandmarkView>& views,
@@ -179,7 +171,7 @@ void StereoEstimator::Follow(const PoseSolution& solution, const Expectation& ex
   covariance_ = state_covariance_.topLeftCorner<6, 6>() + solution.covariance;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!solution.inlier[i]) {
-      rejected_.insert(views[i].id);
+      rejected_.Add(views[i].id);
       window_.landmarks.erase(views[i].id);
     }
   }
@@ -218,24 +210,7 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
     imu_->Connect(before, state_covariance_, keyframe);
   }
   window_.keyframes.push_back(keyframe);
-  std::set<std::uint64_t> trusted;
-  for (const LandmarkView& view : seen) trusted.insert(view.id);
-  keyframe_views_ = 0;
-  for (const FeatureObservation& f : features.features) {
-    const auto found = window_.landmarks.find(f.id);
-    const StereoPixel pixel = PixelOf(f);
-    if (found != window_.landmarks.end()) {
-      if (!trusted.contains(f.id)) continue;
-      found->second.sightings.push_back({keyframe.id, pixel});
-    } else if (pixel.disparity_px && !rejected_.contains(f.id)) {
-      window_.landmarks[f.id] = {.host = keyframe.id,
-                                 .coordinates = LandmarkOf(camera_, pixel),
-                                 .sightings = {{keyframe.id, pixel}}};
-    } else {
-      continue;
-    }
-    ++keyframe_views_;
-  }
+  keyframe_views_ = AddSightings(camera_, features, seen, rejected_, window_);
 }
 
 void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& report) {
@@ -244,7 +219,7 @@ void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& rep
   if (!AdjustBundle(camera_, adjustment_, window_).usable) ++report.failed_solves;
   for (const std::uint64_t id :
        RemoveOutliers(camera_, adjustment_.sigmas, options_.inlier_sigmas, window_)) {
-    rejected_.insert(id);
+    rejected_.Add(id);
     ++report.map_rejected;
   }
   watch.Lap(Stage::kAdjustment);
@@ -279,15 +254,6 @@ void StereoEstimator::Begin(const Matrix6d& covariance) {
   state.bottomRightCorner<9, 9>() = imu_->StartCovariance();
   state.bottomRightCorner<6, 6>() = state_covariance_.bottomRightCorner<6, 6>();
   window_.prior = PriorFromCovariance(T_WB_, motion, state);
-}
-
-// Track ids are never used again once lost, so only those still seen need to be remembered.
-void StereoEstimator::ForgetRejected(const StereoFeatures& features) {
-  std::set<std::uint64_t> seen;
-  for (const FeatureObservation& f : features.features) {
-    if (rejected_.contains(f.id)) seen.insert(f.id);
-  }
-  rejected_ = std::move(seen);
 }
 
 }  // namespace polnav::nav

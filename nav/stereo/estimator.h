@@ -14,7 +14,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "nav/api/calibration.h"
@@ -28,6 +27,7 @@
 #include "nav/stereo/options.h"
 #include "nav/stereo/pose_solver.h"
 #include "nav/stereo/rectifier.h"
+#include "nav/stereo/window_features.h"
 
 namespace polnav::nav {
 
@@ -51,7 +51,6 @@ class StereoEstimator {
 
   [[nodiscard]] Report ProcessFeatures(const StereoFeatures& features);
   [[nodiscard]] Expectation Expect(TimeNs stamp);
-  [[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const StereoFeatures& features) const;
   [[nodiscard]] std::vector<LandmarkView> RejectMoving(const std::vector<LandmarkView>& views,
                                                        const Expectation& expected, Report& report);
   void Follow(const PoseSolution& solution, const Expectation& expected,
@@ -63,7 +62,6 @@ class StereoEstimator {
   void OptimizeWindow(const StereoFeatures& features, Report& report);
   [[nodiscard]] Estimate Answer(bool tracked) const;
   void Begin(const Matrix6d& covariance);
-  void ForgetRejected(const StereoFeatures& features);
 
   StereoOptions options_;
   RectifiedCamera camera_;
@@ -77,7 +75,7 @@ class StereoEstimator {
   Matrix15d state_covariance_ = Matrix15d::Zero();  // of the newest keyframe
   int keyframe_views_ = 0;
   std::uint64_t next_keyframe_ = 0;
-  std::set<std::uint64_t> rejected_;  // tracks that do not belong to the static scene
+  RejectedTracks rejected_;
 
   TimeNs stamp_ = 0;  // of the newest frame
   TimeNs step_ = 0;   // between the newest two
