@@ -76,13 +76,13 @@ struct TrackerOptions {
 
 struct StereoOptions {
   TrackerOptions tracker;
-  // Three times what tracking scatters by: its errors are alike from frame to frame and from point
-  // to point (patches on ground that comes nearer drift all one way), and a larger sigma is how the
-  // window knows. Larger trusts vision less.
-  double pixel_sigma_px = 1.0;
+  // Four times what tracking scatters by: its errors are alike from frame to frame and from point to
+  // point (patches on ground that comes nearer drift all one way), and a larger sigma is how the
+  // window knows. Disparities, each found anew, err more independently. Larger trusts vision less.
+  double pixel_sigma_px = 1.5;
   double disparity_sigma_px = 0.8;
   double flow_gate_sigmas = 4.0;  // A of [Chu2021, eq. 12]: departure from the predicted flow
-  double inlier_sigmas = 1.5;     // departure from the solved pose that makes an outlier
+  double inlier_sigmas = 1.2;     // departure from the solved pose that makes an outlier
   int min_inliers = 12;           // fewer: the frame is not tracked, the estimate coasts
   int window_keyframes = 8;       // longer: less drift, slower (cost grows with its square)
   double keyframe_distance_m = 1.4;

@@ -78,7 +78,8 @@ TEST(InertialEstimator, AStandingStartIsLevelledByTheAccelerometer) {
   const Eigen::Vector3d up_true = drive.TruthAt(19).q.conjugate() * Eigen::Vector3d::UnitZ();
   // The bias of 0.0156 m/s^2 tilts by as much over gravity.
   EXPECT_LT((up - up_true).norm(), 1.2 * 0.0156 / kGravity_m_s2);
-  EXPECT_LT(std::sqrt(drive.last.covariance(3, 3)), DegToRad(0.2));
+  // 0.13 degrees of bias and crooked axes, and what vision leaves of the velocities.
+  EXPECT_LT(std::sqrt(drive.last.covariance(3, 3)), DegToRad(0.25));
 }
 
 // Three seconds without a picture at 6 m/s: velocity known to about 0.05 m/s, tilt to 0.1 degrees
