@@ -76,8 +76,8 @@ struct TrackerOptions {
 
 struct StereoOptions {
   TrackerOptions tracker;
-  // Four times what tracking scatters by: its errors are alike from frame to frame and from point to
-  // point (patches on ground that comes nearer drift all one way), and a larger sigma is how the
+  // Four times what tracking scatters by: its errors are alike from frame to frame and from point
+  // to point (patches on ground that comes nearer drift all one way), and a larger sigma is how the
   // window knows. Disparities, each found anew, err more independently. Larger trusts vision less.
   double pixel_sigma_px = 1.5;
   double disparity_sigma_px = 0.8;
