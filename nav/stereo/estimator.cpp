@@ -200,9 +200,10 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
                                   const std::vector<LandmarkView>& seen,
                                   const std::optional<CoastSigmas>& coasted) {
   Keyframe keyframe{.id = next_keyframe_++, .stamp = stamp_, .T_WB = T_WB_, .coasted = coasted};
-  if (polarization_)
+  if (polarization_) {
     keyframe.heading =
         polarization_->TakeEdge(stamp_, T_WB_.q, covariance_.bottomRightCorner<3, 3>());
+  }
   if (imu_ && !window_.keyframes.empty()) {
     const Motion& before = window_.keyframes.back().motion;
     keyframe.motion = before;
