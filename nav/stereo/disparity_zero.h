@@ -10,8 +10,7 @@
 // on the length of t only if z is right. Each pair of frames gives one measurement of z; they are
 // averaged, weighted, with a slow drift allowed. They also err together, as far as the lens and the
 // tracking depart from their models: what they say is shared out between z and that, by what is
-// expected of each. What stands still or only turns tells nothing and
-// leaves z as it is.
+// expected of each. What stands still or only turns tells nothing and leaves z as it is.
 // Fails where all points are at one depth (no information, noticed) or move together.
 #pragma once
 

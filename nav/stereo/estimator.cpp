@@ -164,9 +164,9 @@ std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<Landma
 void StereoEstimator::Follow(const PoseSolution& solution, const Expectation& expected,
                              const std::vector<LandmarkView>& views) {
   motion_ = T_WB_.Inverse() * solution.T_WB;
-  v_WI_ = expected.by_imu
-              ? expected.v_WI + expected.v_by_pose * Difference(solution.T_WB, expected.pose.T_WB)
-              : v_WI_;
+  if (expected.by_imu) {
+    v_WI_ = expected.v_WI + expected.v_by_pose * Difference(solution.T_WB, expected.pose.T_WB);
+  }
   T_WB_ = solution.T_WB;
   covariance_ = state_covariance_.topLeftCorner<6, 6>() + solution.covariance;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -179,7 +179,7 @@ void StereoEstimator::Follow(const PoseSolution& solution, const Expectation& ex
 
 void StereoEstimator::Coast(const Expectation& expected) {
   T_WB_ = expected.pose.T_WB;
-  v_WI_ = expected.by_imu ? expected.v_WI : v_WI_;
+  if (expected.by_imu) v_WI_ = expected.v_WI;
   covariance_ += expected.pose.covariance;
 }
 

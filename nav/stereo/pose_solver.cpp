@@ -12,12 +12,23 @@ struct Normal {
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
+struct PriorInformation {
+  Pose T_WB;
+  Matrix6d information;
+};
+
+std::optional<PriorInformation> InformationOf(const std::optional<PosePrior>& prior) {
+  if (!prior) return std::nullopt;
+  return PriorInformation{prior->T_WB,
+                          Eigen::LDLT<Matrix6d>(prior->covariance).solve(Matrix6d::Identity())};
+}
+
 Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>& views,
                  const Pose& T_WB, const PoseSolverOptions& options,
-                 const std::optional<PosePrior>& prior) {
+                 const std::optional<PriorInformation>& prior) {
   Normal n;
   if (prior) {
-    n.H = Eigen::LDLT<Matrix6d>(prior->covariance).solve(Matrix6d::Identity());
+    n.H = prior->information;
     n.g = n.H * Difference(T_WB, prior->T_WB);
   }
   for (const LandmarkView& view : views) {
@@ -38,9 +49,10 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
                                       const PoseSolverOptions& options, int min_inliers,
                                       const std::optional<PosePrior>& prior) {
   if (static_cast<int>(views.size()) < min_inliers) return std::nullopt;
+  const std::optional<PriorInformation> known = InformationOf(prior);
   PoseSolution solution{.T_WB = T_WB};
   for (int i = 0; i < options.max_iterations; ++i) {
-    const Normal n = Linearize(camera, views, solution.T_WB, options, prior);
+    const Normal n = Linearize(camera, views, solution.T_WB, options, known);
     const Eigen::LDLT<Matrix6d> solver(n.H);
     if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
     const Eigen::Matrix<double, 6, 1> step = -solver.solve(n.g);
@@ -64,7 +76,7 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
   }
   solution.inliers = static_cast<int>(inliers.size());
   if (solution.inliers < min_inliers) return std::nullopt;
-  const Normal n = Linearize(camera, inliers, solution.T_WB, options, prior);
+  const Normal n = Linearize(camera, inliers, solution.T_WB, options, known);
   const Eigen::LDLT<Matrix6d> solver(n.H);
   if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
   solution.T_WB = Perturb(solution.T_WB, -solver.solve(n.g));
