@@ -100,12 +100,26 @@ struct ImuCalibration {
   double accel_bias_walk_m_s2_sqrt_s = 0.0;
 };
 
+// A camera that looks down and measures image motion, with gyroscopes and a range finder beside it.
+// F: z along the optical axis, x and y as the sample's angles are counted.
+struct OpticalFlowCalibration {
+  Pose T_BF;
+  double rate_hz = 0.0;
+  double flow_noise_rad_s_sqrt_hz = 0.0;  // white, of each axis of the flow over a textured ground
+  double flow_scale_sigma = 0.0;          // of the focal length, relative [-]
+  double mount_sigma_rad = 0.0;           // of T_BF, about each axis
+  double range_sigma_m = 0.0;
+  double range_min_m = 0.0;
+  double range_max_m = 0.0;
+};
+
 // Whatever is absent, the vehicle does not carry.
 struct Rig {
   std::optional<StereoCalibration> stereo;
   std::optional<PolarimeterCalibration> polarimeter;
   std::optional<PolarizationCameraCalibration> polarization_camera;
   std::optional<ImuCalibration> imu;
+  std::optional<OpticalFlowCalibration> optical_flow;
 };
 
 }  // namespace polnav::nav

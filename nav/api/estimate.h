@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nav/api/geometry.h"
@@ -23,12 +24,20 @@ struct StartPrior {
   double level_sigma_rad = 0.0;  // of the assumption that the vehicle starts level
 };
 
+// What an estimator believes of its IMU.
+struct ImuBiases {
+  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();  // of (gyro, accel)
+};
+
 struct Estimate {
   TimeNs stamp = 0;
   Pose T_WB;
   // Of (dp_W [m], dtheta_W [rad]): p_true = p + dp, q_true = Exp(dtheta) * q. Both in W.
   Matrix6d covariance = Matrix6d::Zero();
-  bool tracked = false;  // false: coasting on the last motion, nothing seen
+  bool tracked = false;             // false: coasting on the last motion, nothing seen
+  std::optional<ImuBiases> biases;  // of those that estimate them
 };
 
 enum class Outcome {
@@ -43,6 +52,15 @@ struct SkyResidual {
   TimeNs stamp = 0;
   double residual_rad = 0.0;
   double sigma_rad = 0.0;  // of the residual, as the gate believes
+  bool gated = false;
+};
+
+// How far a reading was from what a filter expected.
+struct Innovation {
+  TimeNs stamp = 0;
+  std::string_view sensor;  // "optical_flow", "range", "polarimeter", ...
+  double nis = 0.0;         // squared, over its covariance
+  int dof = 0;              // what nis is on average when the filter is consistent
   bool gated = false;
 };
 
@@ -63,7 +81,8 @@ struct Report {
   // Chi square of the pose's inliers over its degrees of freedom: 1 when their sigmas are honest
   // and the map is exact.
   std::optional<double> vision_nis;
-  std::vector<SkyResidual> sky;  // readings that the frame's attitude made usable
+  std::vector<SkyResidual> sky;         // readings that the frame's attitude made usable
+  std::vector<Innovation> innovations;  // of a filter's updates
   StageTimes stage_s{};
   std::optional<Estimate> estimate;  // present when the measurement produced one
 };

@@ -61,14 +61,17 @@ struct PolarizationImage {
   cv::Mat mosaic;  // CV_8UC1 or CV_16UC1
 };
 
-// Integrated image motion of a downward camera over the interval that ends at the stamp.
+// Image motion of a camera that looks down (PX4Flow's signs), integrated over the interval that
+// ends at the stamp. A turn of F by a small angle about x or y reads that angle; moving at v_F over
+// ground at distance d along the optical axis, flow_rad = integral of (w_x - v_y / d, w_y + v_x /
+// d) dt.
 struct OpticalFlowSample {
   TimeNs stamp = 0;
   TimeNs integration = 0;
   Eigen::Vector2d flow_rad = Eigen::Vector2d::Zero();
-  Eigen::Vector3d gyro_rad = Eigen::Vector3d::Zero();
-  std::optional<double> range_m;
-  double quality = 0.0;  // 0 (none) to 1
+  Eigen::Vector3d gyro_rad = Eigen::Vector3d::Zero();  // F's own gyroscopes, integrated alike
+  std::optional<double> range_m;  // to the ground along the optical axis; absent: no echo
+  double quality = 0.0;           // 0 (none) to 1
 };
 
 // A GNSS/INS reference system's solution. Recorded for comparison: estimators ignore it.
