@@ -14,8 +14,9 @@ constexpr std::size_t kSlotsMax = 1024;  // some seconds of all sensors
 }  // namespace
 
 MeasurementStream::MeasurementStream(const SimulatorOptions& options, const RunKey& key,
-                                     nav::TimeNs duration, int render_threads)
-    : options_(options), key_(key), simulator_(options, key, duration) {
+                                     nav::TimeNs duration, int render_threads,
+                                     std::shared_ptr<const Motion> motion)
+    : options_(options), key_(key), simulator_(options, key, duration, std::move(motion)) {
   if (render_threads < 1) throw std::logic_error("MeasurementStream: needs a render thread");
   // Enough for every camera to be busy while one picture waits in front of the estimators.
   pictures_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;

@@ -31,8 +31,9 @@ using StreamItem = std::variant<Truth, nav::Measurement, FrameTruth, FeatureSigh
 class MeasurementStream {
  public:
   // Emits what falls due from time zero up to and including `duration`.
+  // motion: as the simulator takes it.
   MeasurementStream(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration,
-                    int render_threads);
+                    int render_threads, std::shared_ptr<const Motion> motion = nullptr);
   ~MeasurementStream();
   MeasurementStream(const MeasurementStream&) = delete;
   MeasurementStream& operator=(const MeasurementStream&) = delete;

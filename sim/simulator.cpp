@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/disturbances/on_the_road.h"
 #include "sim/random.h"
@@ -20,13 +21,21 @@ std::uint64_t SeedOf(const RunKey& key, std::string_view part) {
   return high << 32U | sample.Bits();
 }
 
+struct GroundSeeds {
+  std::uint64_t terrain, driver;
+};
+GroundSeeds GroundSeedsOf(const RunKey& world) {
+  return {SeedOf(world, "world/terrain"), SeedOf(world, "vehicle/driver")};
+}
+
 // Where the cameras come by.
 std::vector<Eigen::Vector3d> ViewpointsOf(const VehicleOptions& vehicle, const Track& track,
                                           const Terrain& terrain, double camera_height_m) {
   constexpr double kSpacing_m = 4.0;
-  if (vehicle.turntable) {
-    const Eigen::Vector3d& p = vehicle.turntable->position_m;
-    return {p + (terrain.Height(p.x(), p.y()) + camera_height_m) * Eigen::Vector3d::UnitZ()};
+  if (const auto place = PlaceOf(vehicle)) {
+    const double above_m = vehicle.turntable ? vehicle.turntable->position_m.z() : 0.0;
+    return {{place->x(), place->y(),
+             terrain.Height(place->x(), place->y()) + above_m + camera_height_m}};
   }
   std::vector<Eigen::Vector3d> viewpoints;
   for (double s_m = 0.0; s_m < track.length_m(); s_m += kSpacing_m) {
@@ -56,14 +65,33 @@ nav::Rig NominalRig(const SensorOptions& sensors) {
   return rig;
 }
 
-Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration)
+RunKey WorldKey(const WorldOptions& world, const RunKey& key) {
+  return world.seed == 0 ? key : RunKey{.seed = world.seed, .trial = 0};
+}
+
+Motion RecordMotion(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration) {
+  const GroundSeeds seeds = GroundSeedsOf(WorldKey(options.world, key));
+  const Track track(options.world.track);
+  const Terrain terrain(options.world.terrain, track, seeds.terrain);
+  Vehicle vehicle(options.vehicle, track, terrain, seeds.driver);
+  Motion motion;
+  motion.push_back(vehicle.truth());
+  while (motion.back().stamp <= duration) {  // the simulator is one step ahead at its end
+    vehicle.Step();
+    motion.push_back(vehicle.truth());
+  }
+  return motion;
+}
+
+Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::TimeNs duration,
+                     std::shared_ptr<const Motion> motion)
     : events_(ScheduleDisturbances(options.disturbances, nav::ToSeconds(duration), key.seed,
                                    key.trial)) {
   const auto utc = sky::ParseUtc(options.site.utc);
   if (!utc) throw std::logic_error("Simulator: site.utc is no date: " + options.site.utc);
   track_ = std::make_unique<Track>(options.world.track);
-  terrain_ =
-      std::make_unique<Terrain>(options.world.terrain, *track_, SeedOf(key, "world/terrain"));
+  const GroundSeeds seeds = GroundSeedsOf(WorldKey(options.world, key));
+  terrain_ = std::make_unique<Terrain>(options.world.terrain, *track_, seeds.terrain);
   sky_ = std::make_unique<sky::WorldSky>(
       options.sky, sky::ComputeSunArc(sky::SiteOf(options.site), *utc), SeedOf(key, "sky/clouds"),
       CloudPassages(events_, options.vehicle, *track_));
@@ -71,7 +99,11 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
                   [](const DisturbanceEvent& event) { return event.what.fog.has_value(); })) {
     fog_light_.emplace(*sky_);
   }
-  vehicle_.emplace(options.vehicle, *track_, *terrain_, SeedOf(key, "vehicle/driver"));
+  if (motion) {
+    vehicle_.emplace(std::move(motion));
+  } else {
+    vehicle_.emplace(options.vehicle, *track_, *terrain_, seeds.driver);
+  }
   BuildScene(
       WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),
       options, key, duration);
@@ -88,7 +120,7 @@ void Simulator::BuildScene(const WorldOptions& world, const SimulatorOptions& op
   hides_sky_ = (sensors.polarimeter || sensors.polarization_camera) && HidesSky(world);
   if (!sensors.stereo && !hides_sky_) return;
   const bool draws = sensors.stereo && options.level == Level::kImage;
-  scene_ = BuildWorld(world, *track_, *terrain_, SeedOf(key, "world/plaza"),
+  scene_ = BuildWorld(world, *track_, *terrain_, SeedOf(WorldKey(world, key), "world/plaza"),
                       nav::ToSeconds(duration), draws);
   if (!hides_sky_ && (!sensors.stereo || draws)) return;
   occlusion_ = std::make_unique<Occlusion>(

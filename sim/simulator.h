@@ -75,6 +75,13 @@ struct RunKey {
   std::uint64_t trial = 0;
 };
 
+// What draws the ground and the vehicle's way.
+[[nodiscard]] RunKey WorldKey(const WorldOptions& world, const RunKey& key);
+
+// The vehicle's motion for so long, as a Simulator with the same options would have it.
+[[nodiscard]] Motion RecordMotion(const SimulatorOptions& options, const RunKey& key,
+                                  nav::TimeNs duration);
+
 // A picture of the sky to be taken.
 struct SkyRequest {
   Truth truth;
@@ -90,10 +97,12 @@ struct SkyRequest {
 
 class Simulator {
  public:
-  // duration: traffic and actors move so long, and disturbances are drawn. Throws std::logic_error
-  // when a rate is none of IsSampleRate's or the date is none.
+  // duration: traffic and actors move so long, and disturbances are drawn. motion: the vehicle's,
+  // when it was recorded with these options and this key (motion_memory.h); null: it is simulated.
+  // Throws std::logic_error when a rate is none of IsSampleRate's or the date is none.
   Simulator(const SimulatorOptions& options, const RunKey& key,
-            nav::TimeNs duration = 600 * nav::kNsPerSecond);
+            nav::TimeNs duration = 600 * nav::kNsPerSecond,
+            std::shared_ptr<const Motion> motion = nullptr);
 
   using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
                                 FrameRequest, SkyRequest, FeatureSightings>;

@@ -16,15 +16,21 @@ struct NominalMotion {
 };
 
 NominalMotion NominalAt(const VehicleOptions& vehicle, const Track& track, double t_s) {
-  if (vehicle.turntable) {
-    return {.s_m = track.Project(vehicle.turntable->position_m.head<2>()).s_m};
-  }
+  if (const auto place = PlaceOf(vehicle)) return {.s_m = track.Project(*place).s_m};
   const CarOptions car = vehicle.car.value_or(CarOptions{});
   return {.s_m = car.speed_m_s * std::max(0.0, t_s - car.start_delay_s),
           .speed_m_s = car.speed_m_s};
 }
 
 }  // namespace
+
+std::optional<Eigen::Vector2d> PlaceOf(const VehicleOptions& vehicle) {
+  if (vehicle.turntable) return Eigen::Vector2d(vehicle.turntable->position_m.head<2>());
+  if (const auto& hexapod = vehicle.hexapod) {
+    return Eigen::Vector2d(hexapod->start_east_m, hexapod->start_north_m);
+  }
+  return std::nullopt;
+}
 
 std::optional<StructureOptions> StructureOf(const DisturbanceOptions& entry) {
   for (const auto& [kind, stretch] :
@@ -68,9 +74,8 @@ std::vector<sky::CloudPassage> CloudPassages(const std::vector<DisturbanceEvent>
   for (const DisturbanceEvent& event : events) {
     if (!event.what.cloud_passage) continue;
     const double middle_s = 0.5 * (event.start_s + event.end_s);
-    const Eigen::Vector2d over_m = vehicle.turntable
-                                       ? Eigen::Vector2d(vehicle.turntable->position_m.head<2>())
-                                       : track.At(NominalAt(vehicle, track, middle_s).s_m).p_m;
+    const Eigen::Vector2d over_m =
+        PlaceOf(vehicle).value_or(track.At(NominalAt(vehicle, track, middle_s).s_m).p_m);
     passages.push_back({.over_m = over_m,
                         .middle_s = middle_s,
                         .duration_s = event.end_s - event.start_s,

@@ -2,7 +2,8 @@
 //
 // Stretches of road become structures, whoever passes becomes an actor that comes along the road.
 // Where the vehicle is then, is only known nominally: a car at its speed after its start delay (it
-// is some metres behind that, having had to speed up), a turntable where it stands.
+// is some metres behind that, having had to speed up), a turntable where it stands, a hexapod where
+// it starts.
 #pragma once
 
 #include <optional>
@@ -14,6 +15,9 @@
 #include "sky/clouds.h"
 
 namespace polnav::sim {
+
+// Of a vehicle that stays where it starts, or near it.
+[[nodiscard]] std::optional<Eigen::Vector2d> PlaceOf(const VehicleOptions& vehicle);
 
 // Of an entry that is a stretch of road.
 [[nodiscard]] std::optional<StructureOptions> StructureOf(const DisturbanceOptions& entry);

@@ -18,6 +18,8 @@ struct CarOptions {
   double start_delay_s = 2.0;     // stands still, so that sensors can be levelled
   double lateral_wander_m = 0.3;  // bound of the smooth weaving about the road's centre line
 
+  bool operator==(const CarOptions&) const = default;
+
   template <typename Visitor>
   void Visit(Visitor& v) {
     v("speed_m_s", speed_m_s, {.min = 0.5, .max = 20.0});

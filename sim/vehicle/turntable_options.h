@@ -14,6 +14,8 @@ struct TurntableOptions {
   double peak_rate_deg_s = 10.0;  // half way through a step; the mean is half of it
   double tilt_sigma_deg = 0.05;   // of its axis off the vertical, each way; stays for the trial
 
+  bool operator==(const TurntableOptions&) const = default;
+
   template <typename Visitor>
   void Visit(Visitor& v) {
     v("position_m", position_m, {.min = -1e4, .max = 1e4});

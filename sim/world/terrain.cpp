@@ -20,6 +20,7 @@ struct Band {
 };
 constexpr Band kHills{30.0, 55.0, 6};
 constexpr Band kBumps{2.0, 6.0, 10};
+constexpr Band kStones{0.15, 0.6, 12};
 
 // 1 for t <= 0, 0 for t >= 1, with two derivatives that are zero at both ends.
 struct Fade {
@@ -60,6 +61,7 @@ Terrain::Terrain(const TerrainOptions& options, const Track& track, std::uint64_
   };
   add_band(kHills, options.undulation_m);
   add_band(kBumps, options.bump_m);
+  if (options.roughness_m > 0.0) add_band(kStones, options.roughness_m);
 }
 
 void Terrain::AddCamber(const Eigen::Vector2d& p_m, Surface& surface) const {

@@ -3,7 +3,8 @@
 // One smooth analytic surface z = Height(x, y) under the wheels and under the renderer: the plaza
 // leans as a whole, the road has a cross fall, hills and bumps are sums of plane waves in random
 // directions. Two continuous derivatives. Height at the origin is whatever the seed makes it.
-// Fails: no kerbs, no holes, no bumps shorter than 2 m (a wheel's envelope is not modelled).
+// Fails: no kerbs, no holes. Bumps shorter than 2 m are for feet alone (roughness_m): they are not
+// drawn, and a wheel's envelope over them is not modelled.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +21,9 @@ struct TerrainOptions {
   double camber_deg = 0.5;           // cross fall of the road, lower on the loop's outside
   double undulation_m = 0.08;        // amplitude of hills 30 to 55 m long
   double bump_m = 0.007;             // amplitude of bumps 2 to 6 m long
+  double roughness_m = 0.0;          // amplitude of stones and ruts 0.15 to 0.6 m long
+
+  bool operator==(const TerrainOptions&) const = default;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -28,6 +32,7 @@ struct TerrainOptions {
     v("camber_deg", camber_deg, {.min = -10.0, .max = 10.0});
     v("undulation_m", undulation_m, {.min = 0.0, .max = 5.0});
     v("bump_m", bump_m, {.min = 0.0, .max = 0.2});
+    v("roughness_m", roughness_m, {.min = 0.0, .max = 0.05});
   }
 };
 

@@ -18,6 +18,8 @@ struct TrackOptions {
   double noncircularity = 0.06;  // relative amplitude of the radius' harmonics 2 and 3, together
   double road_width_m = 8.0;
 
+  bool operator==(const TrackOptions&) const = default;
+
   template <typename Visitor>
   void Visit(Visitor& v) {
     v("length_m", length_m, {.min = 60.0, .max = 5000.0});

@@ -21,6 +21,9 @@ namespace polnav::sim {
 
 // YAML keys = field names.
 struct WorldOptions {
+  // Draws the ground, what stands on it and the vehicle's way. 0: the run's own seed and trial do,
+  // so that each trial has a world of its own; otherwise all share one.
+  std::uint64_t seed = 0;
   TerrainOptions terrain;
   TrackOptions track;
   PlazaOptions plaza;
@@ -36,6 +39,7 @@ struct WorldOptions {
 
   template <typename Visitor>
   void Visit(Visitor& v) {
+    v("seed", seed);
     v("terrain", terrain);
     v("track", track);
     v("plaza", plaza);

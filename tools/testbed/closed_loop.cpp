@@ -24,6 +24,7 @@ class Loop {
         rig_(ToldRig(scenario, key_)),
         listener_(scenario, rig_, key_, duration_, options.level),
         level_(options.level),
+        motions_(options.motions),
         render_threads_(options.render_threads) {
     if (!options.record_folder.empty()) {
       recording_.emplace(options.record_folder, scenario, rig_);
@@ -41,10 +42,11 @@ class Loop {
 
   RunRecord Run(const std::function<void(double)>& progress) {
     const auto begin = Clock::now();
-    sim::MeasurementStream stream(
-        {scenario_.site, scenario_.sky, scenario_.world, scenario_.vehicle, scenario_.sensors,
-         scenario_.disturbances, level_},
-        key_, duration_, render_threads_);
+    const sim::SimulatorOptions simulated{
+        scenario_.site,    scenario_.sky,          scenario_.world, scenario_.vehicle,
+        scenario_.sensors, scenario_.disturbances, level_};
+    sim::MeasurementStream stream(simulated, key_, duration_, render_threads_,
+                                  motions_ ? motions_->For(simulated, duration_) : nullptr);
     while (const auto item = stream.Next()) {
       if (const auto* truth = std::get_if<sim::Truth>(&*item)) {
         Take(*truth);
@@ -84,6 +86,7 @@ class Loop {
   nav::Rig rig_;
   Listener listener_;
   sim::Level level_;
+  sim::MotionMemory* motions_;
   int render_threads_;
   std::optional<SightingsRectifier> sightings_;
   std::optional<GroundTruthFiles> ground_truth_;

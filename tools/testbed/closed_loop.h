@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "sim/motion_memory.h"
 #include "tools/testbed/run_record.h"
 #include "tools/testbed/scenario.h"
 
@@ -24,6 +25,8 @@ struct RunOptions {
   std::filesystem::path ground_truth_folder;
   // Where everything that the sensors say is recorded; empty: nowhere. See dataset/euroc_writer.h.
   std::filesystem::path record_folder;
+  // Of the runs before this one, to which it may move alike; null: none.
+  sim::MotionMemory* motions = nullptr;
 };
 
 // What the estimators are told about the sensors: the data sheet, and a calibration turn where the

@@ -57,8 +57,9 @@ void CheckStretch(const YamlDocument& document, const std::string& key, double l
 void CheckPassing(const YamlDocument& document, const Scenario& scenario, const std::string& key,
                   const sim::PassingOptions& passing) {
   constexpr double kLeast_m_s = 0.2;  // of difference: less takes minutes to pass
-  const double own_m_s =
-      scenario.vehicle.turntable ? 0.0 : scenario.vehicle.car.value_or(sim::CarOptions{}).speed_m_s;
+  const double own_m_s = sim::PlaceOf(scenario.vehicle)
+                             ? 0.0
+                             : scenario.vehicle.car.value_or(sim::CarOptions{}).speed_m_s;
   if (std::abs(passing.speed_m_s - own_m_s) >= kLeast_m_s) return;
   FailAt(
       document, key + ".passing.speed_m_s",

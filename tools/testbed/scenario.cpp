@@ -68,8 +68,21 @@ void CheckStereo(const YamlDocument& document,
 }
 
 void CheckVehicle(const YamlDocument& document, const sim::VehicleOptions& vehicle) {
-  if (vehicle.car && vehicle.turntable) {
-    FailAt(document, "vehicle", "'car' and 'turntable' exclude each other");
+  if (sim::CountOf(vehicle) > 1) {
+    FailAt(document, "vehicle", "'car', 'turntable' and 'hexapod' exclude each other");
+  }
+  if (!vehicle.hexapod) return;
+  const sim::WalkOptions& walk = vehicle.hexapod->walk;
+  const double turn_rate_rad_s = nav::DegToRad(walk.turn_rate_deg_s);
+  if (!sim::IsWithinReach(*vehicle.hexapod, 0.0, 0.0)) {
+    FailAt(document, "vehicle.hexapod.gait.reach_m",
+           "standing so wide at this body height is out of reach of the legs' joints");
+  }
+  if (!sim::IsWithinReach(*vehicle.hexapod, walk.speed_m_s, turn_rate_rad_s)) {
+    FailAt(document, "vehicle.hexapod.walk.speed_m_s",
+           fmt::format("the joints cannot reach where the feet must go at {} m/s, {} deg/s and "
+                       "{} s a cycle: slower, shorter cycles or longer legs",
+                       walk.speed_m_s, walk.turn_rate_deg_s, vehicle.hexapod->gait.cycle_s));
   }
 }
 
