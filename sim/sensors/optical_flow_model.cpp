@@ -6,9 +6,17 @@
 namespace polnav::sim {
 namespace {
 
-// The fit's reference: ground that a pixel covers, and contrast.
+// The fit of docs/optical_flow.md: its reference, and how noise depends on the ground that a pixel
+// covers and on what the world's own textures add to the grain, as a contrast over the reference.
 constexpr double kPixel_m = 0.6e-3;
 constexpr double kContrast = 0.1;
+constexpr double kPixelPower = -0.6;
+constexpr double kTexture = 0.1;
+constexpr double kTexturePower = 2.0;
+constexpr double kTextureMost = 0.6;
+constexpr double kMatchWidth = 0.285;  // of the logarithm of noise, over which blocks are lost
+constexpr int kBlocks = 25;
+constexpr double kFarthest_px = kBlockSearch_px + 0.5;
 
 Eigen::Vector2d GaussianPair(RandomStream::Sample& draw) {
   const double x = draw.Gaussian();
@@ -24,8 +32,10 @@ Eigen::Vector2d Project(const FlowFrame& point_of, const FlowFrame& into, double
 
 }  // namespace
 
+// Of a picture that moves: a displacement's two pictures err by themselves.
 double TypicalFlowNoise(const OpticalFlowOptions& options) {
-  return options.model.moving_sigma_px / options.focal_px * std::sqrt(options.internal_rate_hz);
+  return std::sqrt(2.0 * options.internal_rate_hz) * options.model.noise_sigma_px /
+         options.focal_px;
 }
 
 // Forwards and backwards, so that it is exact to the second order of the motion.
@@ -40,21 +50,45 @@ OpticalFlowModel::OpticalFlowModel(const OpticalFlowOptions& options, double gra
     : options_(options),
       grain_contrast_(grain_contrast),
       focal_px_(DrawTrueFlowCamera(options, seed, trial).focal_px),
-      blocks_(36),
       noise_(seed, trial, "optical_flow/model") {}
+
+void OpticalFlowModel::ComeTo(double distance_m) {
+  const double pixel = distance_m / focal_px_ / kPixel_m;
+  const double texture = std::min(kTextureMost, kTexture * std::pow(pixel, kTexturePower));
+  const double contrast = std::hypot(grain_contrast_ / kContrast, texture);
+  // The scenario's own noise stays within what pictures could show.
+  sigma_px_ = std::min(
+      1.0, options_.model.noise_sigma_px * std::pow(pixel, kPixelPower) / std::max(1e-6, contrast));
+  const double weaker = std::log(std::max(1e-9, sigma_px_) / options_.model.half_matched_px);
+  share_ = 0.5 * std::erfc(weaker / kMatchWidth / std::sqrt(2.0));
+}
 
 PictureShift OpticalFlowModel::Match(const FlowFrame& before, const FlowFrame& after,
                                      std::uint64_t frame) {
-  PictureShift match{.blocks = blocks_};
+  RandomStream::Sample draw = noise_.At(frame);
+  const Eigen::Vector2d a = GaussianPair(draw);
+  const Eigen::Vector2d b = GaussianPair(draw);
+  const double luck = draw.Gaussian();
+  PictureShift match{.blocks = kBlocks};
   const auto shift = TrueShift(before, after, focal_px_);
-  if (!shift) return match;
-  match.shift_px = *shift;
-  match.matched = match.blocks;
+  if (shift) {
+    const double way = shift->norm() / options_.model.texture_length_px;
+    const double alike = std::exp(-way * way);
+    const double rest = std::sqrt(1.0 - alike * alike);
+    match.shift_px = *shift + sigma_px_ * (a - alike * after_ - rest * b);
+    luck_ = alike * luck_ + rest * luck;
+    const double share = share_ + luck_ * std::sqrt(share_ * (1.0 - share_) / kBlocks);
+    const bool found = shift->cwiseAbs().maxCoeff() < kFarthest_px;
+    match.matched =
+        found ? static_cast<int>(std::lround(kBlocks * std::clamp(share, 0.0, 1.0))) : 0;
+  }
+  after_ = a;
   return match;
 }
 
 nav::OpticalFlowSample OpticalFlowModel::Take(const FlowInterval& interval) {
   std::vector<PictureShift> shifts;
+  if (interval.frames.back().distance_m) ComeTo(*interval.frames.back().distance_m);
   const std::uint64_t first = interval.index * (interval.frames.size() - 1) + 1;
   for (std::size_t i = 0; i + 1 < interval.frames.size(); ++i) {
     shifts.push_back(Match(interval.frames[i], interval.frames[i + 1], first + i));

@@ -1,7 +1,7 @@
 // What optical-flow sensor is it, and how far is it from its data sheet? YAML keys = field names.
 //
 // The defaults are a PX4Flow [Honegger2013]: 16 mm lens, 24 um pixels after binning, 64 x 64 of
-// them; an L3GD20 gyroscope and an HRLV-MaxSonar-EZ4 sonar [L3GD20; MB1043]. docs/optical_flow.md
+// them; an L3GD20 gyroscope and an HRLV-MaxSonar-EZ4 sonar [L3GD20] [MB1043]. docs/optical_flow.md
 // says which figures are theirs and which are our choice.
 #pragma once
 
@@ -11,18 +11,20 @@ namespace polnav::sim {
 
 // At measurement level, where no picture is drawn: the fit of docs/optical_flow.md.
 struct OpticalFlowModelOptions {
-  // Error of one measured displacement of the picture, along each axis, one sigma, at a grain
-  // contrast of 0.1 and a pixel that covers 0.6 mm of the ground.
-  double steady_sigma_px = 0.002;  // of a picture that does not move: pixel noise
-  double moving_sigma_px = 0.006;  // added when the picture moves by a pixel or more
-  // Displacements that the pictures' content misleads stay alike for so many pixels of way.
-  double texture_length_px = 4.0;
+  // What one picture's pixel noise adds to a displacement, along each axis, one sigma, over a grain
+  // of contrast 0.1 whose pixels cover 0.6 mm.
+  double noise_sigma_px = 0.010;
+  // A picture's noise pulls the displacement before it and the one after it oppositely while the
+  // ground moves by less than this from one to the next: errors of slow flow take themselves back.
+  double texture_length_px = 1.5;
+  // Half of the blocks have texture enough to be matched where the noise above reaches this.
+  double half_matched_px = 0.043;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
-    v("steady_sigma_px", steady_sigma_px, {.min = 0.0, .max = 1.0});
-    v("moving_sigma_px", moving_sigma_px, {.min = 0.0, .max = 1.0});
-    v("texture_length_px", texture_length_px, {.min = 0.1, .max = 1000.0});
+    v("noise_sigma_px", noise_sigma_px, {.min = 0.0, .max = 10.0});
+    v("texture_length_px", texture_length_px, {.min = 0.01, .max = 1000.0});
+    v("half_matched_px", half_matched_px, {.min = 1e-4, .max = 10.0});
   }
 };
 
