@@ -14,7 +14,8 @@ constexpr double kPixelPower = -0.6;
 constexpr double kTexture = 0.1;
 constexpr double kTexturePower = 2.0;
 constexpr double kTextureMost = 0.6;
-constexpr double kMatchWidth = 0.285;  // of the logarithm of noise, over which blocks are lost
+constexpr double kMoving = 0.75;      // of the noise, is left between pixels
+constexpr double kMatchWidth = 0.35;  // of the logarithm of noise, over which blocks are lost
 constexpr int kBlocks = 25;
 constexpr double kFarthest_px = kBlockSearch_px + 0.5;
 
@@ -34,7 +35,7 @@ Eigen::Vector2d Project(const FlowFrame& point_of, const FlowFrame& into, double
 
 // Of a picture that moves: a displacement's two pictures err by themselves.
 double TypicalFlowNoise(const OpticalFlowOptions& options) {
-  return std::sqrt(2.0 * options.internal_rate_hz) * options.model.noise_sigma_px /
+  return kMoving * std::sqrt(2.0 * options.internal_rate_hz) * options.model.noise_sigma_px /
          options.focal_px;
 }
 
@@ -75,7 +76,8 @@ PictureShift OpticalFlowModel::Match(const FlowFrame& before, const FlowFrame& a
     const double way = shift->norm() / options_.model.texture_length_px;
     const double alike = std::exp(-way * way);
     const double rest = std::sqrt(1.0 - alike * alike);
-    match.shift_px = *shift + sigma_px_ * (a - alike * after_ - rest * b);
+    const double sigma_px = sigma_px_ * (kMoving + (1.0 - kMoving) * alike);
+    match.shift_px = *shift + sigma_px * (a - alike * after_ - rest * b);
     luck_ = alike * luck_ + rest * luck;
     const double share = share_ + luck_ * std::sqrt(share_ * (1.0 - share_) / kBlocks);
     const bool found = shift->cwiseAbs().maxCoeff() < kFarthest_px;
