@@ -40,11 +40,10 @@ TEST(FlowChecks, RefusesASensorOutOfItsRange) {
   EXPECT_EQ(ErrorOf("position_m: [0, 0, 6]"),
             "s.yaml:3: sensors.optical_flow.position_m: the sensor is 6 m or more above the "
             "ground, beyond range_max_m, 5 m");
-  EXPECT_EQ(ErrorOf("position_m: [0, 0, -0.9]", "vehicle: {turntable: {position_m: [0, 0, 1]}}\n")
-                .substr(0, 90),
-            std::string("s.yaml:3: sensors.optical_flow.position_m: the sensor is 0.1 m above the "
-                        "ground, below range_min_m, 0.3 m")
-                .substr(0, 90));
+  EXPECT_EQ(
+      ErrorOf("position_m: [0, 0, -0.9]", "vehicle: {turntable: {position_m: [0, 0, 1]}}\n"),
+      "s.yaml:3: sensors.optical_flow.position_m: the sensor is 0.1 m above the ground, below "
+      "range_min_m, 0.3 m");
   EXPECT_NE(ErrorOf("range_max_m: -1").find("out of range"), std::string::npos);
 }
 

@@ -37,12 +37,12 @@ void CheckFlow(const YamlDocument& document, const Scenario& scenario) {
   const double height_m = flow.position_m.z() + (turntable ? turntable->position_m.z() : 0.0);
   if (height_m > flow.range_max_m) {
     FailAt(document, "sensors.optical_flow.position_m",
-           fmt::format("the sensor is {} m or more above the ground, beyond range_max_m, {} m",
+           fmt::format("the sensor is {:.4g} m or more above the ground, beyond range_max_m, {} m",
                        height_m, flow.range_max_m));
   }
   if (turntable && height_m < flow.range_min_m) {
     FailAt(document, "sensors.optical_flow.position_m",
-           fmt::format("the sensor is {} m above the ground, below range_min_m, {} m", height_m,
+           fmt::format("the sensor is {:.4g} m above the ground, below range_min_m, {} m", height_m,
                        flow.range_min_m));
   }
 }
