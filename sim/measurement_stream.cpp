@@ -20,7 +20,7 @@ MeasurementStream::MeasurementStream(const SimulatorOptions& options, const RunK
   if (render_threads < 1) throw std::logic_error("MeasurementStream: needs a render thread");
   // Enough for every camera to be busy while one picture waits in front of the estimators.
   pictures_under_way_max_ = 2 * static_cast<std::size_t>(render_threads) + 2;
-  if (takes_pictures() || simulator_.polarization_camera()) {
+  if (takes_pictures() || simulator_.polarization_camera() || simulator_.looks_down()) {
     for (int i = 0; i < render_threads; ++i) threads_.emplace_back([this] { TakePictures(); });
   }
   threads_.emplace_back([this, duration] { Simulate(duration); });
@@ -61,6 +61,7 @@ void MeasurementStream::Simulate(nav::TimeNs duration) {
 bool MeasurementStream::Push(const Simulator::Emission& emission) {
   if (const auto* request = std::get_if<FrameRequest>(&emission)) return PushFrame(*request);
   if (const auto* sky = std::get_if<SkyRequest>(&emission)) return Ask(*sky);
+  if (const auto* flow = std::get_if<FlowRequest>(&emission)) return Ask(*flow);
   if (const auto* truth = std::get_if<Truth>(&emission)) return Put(StreamItem(*truth));
   if (const auto* seen = std::get_if<FeatureSightings>(&emission)) return Put(StreamItem(*seen));
   if (const auto* imu = std::get_if<nav::ImuSample>(&emission)) {
@@ -68,6 +69,9 @@ bool MeasurementStream::Push(const Simulator::Emission& emission) {
   }
   if (const auto* light = std::get_if<nav::PolarizationSample>(&emission)) {
     return Put(StreamItem(nav::Measurement(*light)));
+  }
+  if (const auto* flow = std::get_if<nav::OpticalFlowSample>(&emission)) {
+    return Put(StreamItem(nav::Measurement(*flow)));
   }
   return Put(StreamItem(nav::Measurement(std::get<nav::ReferencePose>(emission))));
 }
@@ -110,7 +114,7 @@ bool MeasurementStream::WaitForRoom(std::unique_lock<std::mutex>& lock) {
 }
 
 void MeasurementStream::TakePictures() {
-  std::optional<StereoCamera> camera;  // its OpenGL context belongs to this thread
+  Cameras cameras;
   while (true) {
     std::unique_lock lock(mutex_);
     job_.wait(lock, [&] { return abandoned_ || finished_ || !jobs_.empty(); });
@@ -119,7 +123,7 @@ void MeasurementStream::TakePictures() {
     jobs_.pop_front();
     lock.unlock();
     try {
-      job.done.set_value(Take(job.request, camera));
+      job.done.set_value(Take(job.request, cameras));
     } catch (...) {
       job.done.set_exception(std::current_exception());
     }
@@ -127,19 +131,27 @@ void MeasurementStream::TakePictures() {
 }
 
 MeasurementStream::TimedPicture MeasurementStream::Take(const PictureRequest& request,
-                                                        std::optional<StereoCamera>& camera) const {
+                                                        Cameras& cameras) const {
   const auto* frame = std::get_if<FrameRequest>(&request);
   const auto* frame_truth = std::get_if<FrameTruthRequest>(&request);
-  if ((frame != nullptr || frame_truth != nullptr) && !camera) {
-    camera.emplace(simulator_.scene(), simulator_.sky(), *simulator_.true_stereo(),
-                   *options_.sensors.stereo, key_.seed, key_.trial);
+  const auto* flow = std::get_if<FlowRequest>(&request);
+  if ((frame != nullptr || frame_truth != nullptr) && !cameras.stereo) {
+    cameras.stereo.emplace(simulator_.scene(), simulator_.sky(), *simulator_.true_stereo(),
+                           *options_.sensors.stereo, key_.seed, key_.trial);
+  }
+  if (flow != nullptr && !cameras.flow) {
+    cameras.flow.emplace(simulator_.scene(), simulator_.sky(), *options_.sensors.optical_flow,
+                         GrainContrast(options_.world), key_.seed, key_.trial);
   }
   const auto begin = std::chrono::steady_clock::now();
   TimedPicture taken;
   if (frame != nullptr) {
-    taken = {.picture = nav::Measurement(camera->Capture(*frame)), .stage = "render"};
+    taken = {.picture = nav::Measurement(cameras.stereo->Capture(*frame)), .stage = "render"};
   } else if (frame_truth != nullptr) {
-    taken = {.picture = camera->CaptureTruth(*frame_truth), .stage = "ground_truth"};
+    taken = {.picture = cameras.stereo->CaptureTruth(*frame_truth), .stage = "ground_truth"};
+  } else if (flow != nullptr) {
+    taken = {.picture = nav::Measurement(cameras.flow->Take(flow->interval)),
+             .stage = "flow_camera"};
   } else {
     const auto& sky = std::get<SkyRequest>(request);
     taken = {.picture = nav::Measurement(

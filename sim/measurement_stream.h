@@ -19,6 +19,7 @@
 
 #include "nav/api/measurements.h"
 #include "sim/sensors/frame_truth.h"
+#include "sim/sensors/optical_flow_camera.h"
 #include "sim/simulator.h"
 
 namespace polnav::sim {
@@ -47,11 +48,16 @@ class MeasurementStream {
   }
 
  private:
-  using PictureRequest = std::variant<FrameRequest, SkyRequest, FrameTruthRequest>;
+  using PictureRequest = std::variant<FrameRequest, SkyRequest, FrameTruthRequest, FlowRequest>;
   struct TimedPicture {
     StreamItem picture;
     const char* stage = "";  // key of picture_ms
     double ms = 0.0;
+  };
+  // A thread's own: their OpenGL contexts belong to it.
+  struct Cameras {
+    std::optional<StereoCamera> stereo;
+    std::optional<OpticalFlowCamera> flow;
   };
   struct PictureJob {
     PictureRequest request;
@@ -64,8 +70,7 @@ class MeasurementStream {
   }
   void Simulate(nav::TimeNs duration);
   void TakePictures();
-  [[nodiscard]] TimedPicture Take(const PictureRequest& request,
-                                  std::optional<StereoCamera>& camera) const;
+  [[nodiscard]] TimedPicture Take(const PictureRequest& request, Cameras& cameras) const;
   [[nodiscard]] bool Push(const Simulator::Emission& emission);
   [[nodiscard]] bool PushFrame(const FrameRequest& request);
   [[nodiscard]] bool Ask(const PictureRequest& request);

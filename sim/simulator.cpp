@@ -62,6 +62,7 @@ nav::Rig NominalRig(const SensorOptions& sensors) {
     rig.polarization_camera = NominalPolarizationCamera(*sensors.polarization_camera);
   }
   if (sensors.imu) rig.imu = NominalImu(*sensors.imu);
+  if (sensors.optical_flow) rig.optical_flow = NominalOpticalFlow(*sensors.optical_flow);
   return rig;
 }
 
@@ -108,6 +109,7 @@ Simulator::Simulator(const SimulatorOptions& options, const RunKey& key, nav::Ti
       WithDisturbances(options.world, options.disturbances, events_, options.vehicle, *track_),
       options, key, duration);
   EquipVehicle(options.sensors, key);
+  if (options.sensors.optical_flow) EquipWithFlow(options, key);
   if (options.sensors.stereo && options.level == Level::kMeasurement) {
     EquipWithFeatures(*options.sensors.stereo, options.vehicle, key);
   }
@@ -118,11 +120,14 @@ void Simulator::BuildScene(const WorldOptions& world, const SimulatorOptions& op
                            const RunKey& key, nav::TimeNs duration) {
   const SensorOptions& sensors = options.sensors;
   hides_sky_ = (sensors.polarimeter || sensors.polarization_camera) && HidesSky(world);
-  if (!sensors.stereo && !hides_sky_) return;
-  const bool draws = sensors.stereo && options.level == Level::kImage;
+  // Whatever other sensors there are.
+  has_things_ = sensors.optical_flow && HidesSky(world);
+  const bool draws = (sensors.stereo || sensors.optical_flow) && options.level == Level::kImage;
+  if (!sensors.stereo && !hides_sky_ && !has_things_ && !draws) return;
   scene_ = BuildWorld(world, *track_, *terrain_, SeedOf(WorldKey(world, key), "world/plaza"),
                       nav::ToSeconds(duration), draws);
-  if (!hides_sky_ && (!sensors.stereo || draws)) return;
+  const bool follows_points = sensors.stereo && options.level == Level::kMeasurement;
+  if (!hides_sky_ && !has_things_ && !follows_points) return;
   occlusion_ = std::make_unique<Occlusion>(
       scene_, [lighting = Lighting(*sky_)](const Eigen::Vector3d& normal_W) {
         return lighting.OfWhite(normal_W);
@@ -170,6 +175,31 @@ void Simulator::EquipWithFeatures(const StereoCameraOptions& stereo, const Vehic
       stereo, key.seed, key.trial);
 }
 
+void Simulator::EquipWithFlow(const SimulatorOptions& options, const RunKey& key) {
+  const OpticalFlowOptions& flow = *options.sensors.optical_flow;
+  flow_clock_ = ClockOf(flow.internal_rate_hz);
+  if (ClockOf(flow.rate_hz).period % flow_clock_.period != 0) {
+    throw std::logic_error("Simulator: a flow reading takes a whole number of its pictures");
+  }
+  optical_flow_.emplace(flow, *terrain_, has_things_ ? occlusion_.get() : nullptr, key.seed,
+                        key.trial);
+  if (options.level == Level::kMeasurement) {
+    flow_model_.emplace(flow, GrainContrast(options.world), key.seed, key.trial);
+  }
+}
+
+void Simulator::LookDown(const Truth& now, std::vector<Emission>& due) {
+  if (!optical_flow_ || !flow_clock_.Due(now.stamp)) return;
+  ++flow_clock_.index;
+  std::optional<FlowInterval> interval = optical_flow_->Look(now);
+  if (!interval) return;
+  if (flow_model_) {
+    due.emplace_back(flow_model_->Take(*interval));
+  } else {
+    due.emplace_back(FlowRequest{std::move(*interval)});
+  }
+}
+
 sky::FogAbove Simulator::FogAt(const Truth& truth) const {
   if (!fog_light_) return {};
   const double visibility_m = ConditionsAt(events_, truth.stamp).visibility_m;
@@ -202,6 +232,7 @@ std::vector<Simulator::Emission> Simulator::Step() {
   if (reference_ && reference_clock_.Due(now.stamp)) {
     due.emplace_back(reference_->Sample(now, reference_clock_.index++));
   }
+  LookDown(now, due);
   if (true_stereo_ && stereo_clock_.Due(now.stamp)) {
     const FrameRequest request{.stamp = now.stamp,
                                .index = stereo_clock_.index++,

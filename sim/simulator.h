@@ -20,6 +20,8 @@
 #include "sim/sensors/feature_camera.h"
 #include "sim/sensors/frame_request.h"
 #include "sim/sensors/imu.h"
+#include "sim/sensors/optical_flow.h"
+#include "sim/sensors/optical_flow_model.h"
 #include "sim/sensors/polarimeter.h"
 #include "sim/sensors/polarization_camera.h"
 #include "sim/sensors/reference.h"
@@ -42,6 +44,7 @@ struct SensorOptions {
   std::optional<PolarimeterOptions> polarimeter;
   std::optional<PolarizationCameraOptions> polarization_camera;
   std::optional<ReferenceOptions> reference;
+  std::optional<OpticalFlowOptions> optical_flow;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
@@ -50,13 +53,14 @@ struct SensorOptions {
     v("polarimeter", polarimeter);
     v("polarization_camera", polarization_camera);
     v("reference", reference);
+    v("optical_flow", optical_flow);
   }
 };
 
-// What the stereo camera delivers. All other sensors are the same at both.
+// What stereo camera and optical-flow sensor work with. All other sensors are the same at both.
 enum class Level {
   kImage,        // pictures, drawn
-  kMeasurement,  // sightings of features; a hundred times as fast
+  kMeasurement,  // what pictures would have given; a hundred times as fast
 };
 
 struct SimulatorOptions {
@@ -89,6 +93,11 @@ struct SkyRequest {
   sky::FogAbove fog;
 };
 
+// Pictures of the ground to be taken, for one reading.
+struct FlowRequest {
+  FlowInterval interval;
+};
+
 // True: a sensor of this rate can be sampled at whole physics steps.
 [[nodiscard]] bool IsSampleRate(double rate_hz);
 
@@ -104,8 +113,9 @@ class Simulator {
             nav::TimeNs duration = 600 * nav::kNsPerSecond,
             std::shared_ptr<const Motion> motion = nullptr);
 
-  using Emission = std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
-                                FrameRequest, SkyRequest, FeatureSightings>;
+  using Emission =
+      std::variant<Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
+                   nav::OpticalFlowSample, FrameRequest, SkyRequest, FlowRequest, FeatureSightings>;
 
   // What falls due at the current instant, in a fixed order, the truth (at the cameras' rate, or
   // 10 Hz without cameras) first; then one physics step. The first call is at time zero.
@@ -118,6 +128,8 @@ class Simulator {
   [[nodiscard]] const std::optional<nav::StereoCalibration>& true_stereo() const {
     return true_stereo_;
   }
+  // The optical-flow sensor wants pictures taken.
+  [[nodiscard]] bool looks_down() const { return optical_flow_ && !flow_model_; }
   // Only for taking pictures, from any thread. Absent without one.
   [[nodiscard]] const std::optional<PolarizationCamera>& polarization_camera() const {
     return polarization_camera_;
@@ -143,6 +155,8 @@ class Simulator {
     return hides_sky_ ? occlusion_.get() : nullptr;
   }
   [[nodiscard]] sky::FogAbove FogAt(const Truth& truth) const;
+  void EquipWithFlow(const SimulatorOptions& options, const RunKey& key);
+  void LookDown(const Truth& now, std::vector<Emission>& due);
   void EquipVehicle(const SensorOptions& sensors, const RunKey& key);
 
   std::vector<DisturbanceEvent> events_;
@@ -152,6 +166,7 @@ class Simulator {
   std::unique_ptr<sky::WorldSky> sky_;
   Scene scene_;
   bool hides_sky_ = false;                // of the scene, something
+  bool has_things_ = false;               // for the optical-flow sensor to notice
   std::unique_ptr<Occlusion> occlusion_;  // null: nobody asks what is behind what
   std::optional<Vehicle> vehicle_;
 
@@ -161,12 +176,15 @@ class Simulator {
   Clock reference_clock_;
   Clock stereo_clock_;
   Clock polarization_camera_clock_;
+  Clock flow_clock_;  // of its pictures
   std::optional<Imu> imu_;
   std::optional<Polarimeter> polarimeter_;
   std::optional<Reference> reference_;
   std::optional<nav::StereoCalibration> true_stereo_;
   std::optional<FeatureCamera> feature_camera_;  // in the stereo camera's place
   std::optional<PolarizationCamera> polarization_camera_;
+  std::optional<OpticalFlow> optical_flow_;
+  std::optional<OpticalFlowModel> flow_model_;  // in its pictures' place
   Truth imu_interval_begin_;
 };
 

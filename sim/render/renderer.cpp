@@ -1,6 +1,7 @@
 #include "sim/render/renderer.h"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -49,8 +50,10 @@ StandingLight StandingLightOf(const Lighting& lighting) {
 
 struct Renderer::Impl {
   Impl(const Scene& scene, const sky::WorldSky& sky, const PinholeView& pinhole_view,
-       const std::vector<Eigen::Vector2d>& unneeded_px);
+       const std::vector<Eigen::Vector2d>& unneeded_px, const std::optional<CloseUp>& close_up_in);
 
+  void Draw(const RenderRequest& request);
+  void Read(int type, GLenum gl_type, cv::Mat& image) const;
   void MakeFramebuffer();
   void MoveClouds(nav::TimeNs stamp);
   [[nodiscard]] PictureLight LightOf(const RenderRequest& request, const nav::Pose& T_CW) const;
@@ -64,6 +67,7 @@ struct Renderer::Impl {
   const GlFunctions& gl;
   sky::WorldSky sky;
   PinholeView view;
+  std::optional<CloseUp> close_up;
   Frustum frustum;
   Lighting lighting;
   SkyDome dome;
@@ -77,15 +81,18 @@ struct Renderer::Impl {
   GpuActors actors;
   GpuTriangles gpu_dome;
   GpuTriangles mask;
+  GLuint grain = 0;
   GLuint framebuffer = 0;
 };
 
 Renderer::Impl::Impl(const Scene& scene, const sky::WorldSky& world_sky,
                      const PinholeView& pinhole_view,
-                     const std::vector<Eigen::Vector2d>& unneeded_px)
+                     const std::vector<Eigen::Vector2d>& unneeded_px,
+                     const std::optional<CloseUp>& close_up_in)
     : gl(context.gl()),
       sky(world_sky),
       view(pinhole_view),
+      close_up(close_up_in),
       frustum(pinhole_view),
       lighting(sky),
       dome(BuildSkyDome(sky)),
@@ -98,6 +105,7 @@ Renderer::Impl::Impl(const Scene& scene, const sky::WorldSky& world_sky,
       actors(gl, scene.actors, textures),
       gpu_dome(gl, VerticesOf(dome), dome.indices),
       mask(LoadMask(gl, unneeded_px, view)) {
+  if (close_up) grain = LoadGrain(gl);
   MakeFramebuffer();
   gl.CullFace(GL_BACK);
   gl.FrontFace(GL_CW);  // rows run down the image, which mirrors every triangle
@@ -112,7 +120,8 @@ void Renderer::Impl::MakeFramebuffer() {
   gl.GenRenderbuffers(2, color_depth);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.BindRenderbuffer(GL_RENDERBUFFER, color_depth[0]);
-  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_R8, view.width_px, view.height_px);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, close_up ? GL_R32F : GL_R8, view.width_px,
+                         view.height_px);
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_depth[0]);
   gl.BindRenderbuffer(GL_RENDERBUFFER, color_depth[1]);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, view.width_px, view.height_px);
@@ -135,7 +144,7 @@ void Renderer::Impl::MoveClouds(nav::TimeNs stamp) {
 PictureLight Renderer::Impl::LightOf(const RenderRequest& request, const nav::Pose& T_CW) const {
   Eigen::Matrix4d C_from_W = Eigen::Matrix4d::Identity();
   C_from_W.topLeftCorner<3, 3>() = T_CW.q.toRotationMatrix();
-  C_from_W.topRightCorner<3, 1>() = T_CW.p;
+  if (!close_up) C_from_W.topRightCorner<3, 1>() = T_CW.p;
   const double sun_share =
       lighting.sun() > 0.0
           ? sky.Transmittance(lighting.sun_W(), request.T_WC.p, nav::ToSeconds(request.stamp))
@@ -149,7 +158,8 @@ PictureLight Renderer::Impl::LightOf(const RenderRequest& request, const nav::Po
           .exposure = static_cast<float>(request.exposure),
           .sun_share = static_cast<float>(sun_share),
           .extinction_1_m = static_cast<float>(FogExtinction(request.visibility_m)),
-          .airlight = static_cast<float>(FogRadiance(fallen, request.visibility_m))};
+          .airlight = static_cast<float>(FogRadiance(fallen, request.visibility_m)),
+          .grain = GrainSeenFrom(request.T_WC.p, close_up.value_or(CloseUp{.contrast = 0.0}))};
 }
 
 void Renderer::Impl::DrawMask() {
@@ -165,9 +175,13 @@ void Renderer::Impl::DrawSurfaces(const PictureLight& light, const SurfaceNeeds&
     const auto wanted = [&](const Eigen::AlignedBox3d& sun_box) {
       return (needs.actor_shadow && shadows.MayFallOn(sun_box)) == by_actors;
     };
-    programs.Use({.actor_shadow = by_actors, .fog = needs.fog}, light);
+    programs.Use({.actor_shadow = by_actors, .fog = needs.fog, .close_up = needs.close_up}, light);
     surfaces.Draw(GpuScene::Part::kPlain, wanted);
-    programs.Use({.sun_shadow = true, .actor_shadow = by_actors, .fog = needs.fog}, light);
+    programs.Use({.sun_shadow = true,
+                  .actor_shadow = by_actors,
+                  .fog = needs.fog,
+                  .close_up = needs.close_up},
+                 light);
     surfaces.Draw(GpuScene::Part::kShadowEdge, wanted);
   }
 }
@@ -202,7 +216,13 @@ void Renderer::Impl::DrawSky(const nav::Pose& T_CW, const PictureLight& light) {
 Renderer::Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
                    const std::vector<Eigen::Vector2d>& unneeded_px) {
   const GlTurn turn;
-  impl_ = std::make_unique<Impl>(scene, sky, view, unneeded_px);
+  impl_ = std::make_unique<Impl>(scene, sky, view, unneeded_px, std::nullopt);
+}
+
+Renderer::Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
+                   const CloseUp& close_up) {
+  const GlTurn turn;
+  impl_ = std::make_unique<Impl>(scene, sky, view, std::vector<Eigen::Vector2d>(), close_up);
 }
 
 Renderer::~Renderer() {
@@ -210,35 +230,55 @@ Renderer::~Renderer() {
   impl_.reset();
 }
 
+void Renderer::Impl::Draw(const RenderRequest& request) {
+  context.MakeCurrent();
+  MoveClouds(request.stamp);
+  const std::vector<GpuActors::Placed> placed = actors.At(request.stamp);
+  const nav::Pose T_CW = request.T_WC.Inverse();
+  surfaces.Cull(T_CW, frustum);
+  shadows.Pick(placed, request.stamp, request.T_WC.p);
+  const bool by_actors =
+      surfaces.Any([&](const Eigen::AlignedBox3d& box) { return shadows.MayFallOn(box); });
+  if (by_actors) shadows.DrawPicked(actors);
+  shadows.standing().Bind(kSunMapUnit);
+  shadows.moving().Bind(kActorMapUnit);
+
+  const PictureLight light = LightOf(request, T_CW);
+  const bool fog = light.extinction_1_m > 0.0F;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl.Viewport(0, 0, view.width_px, view.height_px);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  DrawMask();
+  const SurfaceNeeds needs{.actor_shadow = by_actors, .fog = fog, .close_up = close_up.has_value()};
+  if (close_up) {
+    gl.ActiveTexture(kGrainUnit);
+    gl.BindTexture(GL_TEXTURE_2D, grain);
+    gl.ActiveTexture(GL_TEXTURE0);
+  }
+  DrawActors(placed, T_CW, light, needs);
+  DrawSurfaces(light, needs);
+  DrawSky(T_CW, light);
+}
+
+void Renderer::Impl::Read(int type, GLenum gl_type, cv::Mat& image) const {
+  image.create(view.height_px, view.width_px, type);
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(image.step1()));
+  gl.ReadPixels(0, 0, view.width_px, view.height_px, GL_RED, gl_type, image.data);
+}
+
 void Renderer::Render(const RenderRequest& request, cv::Mat& image) {
   const GlTurn turn;
-  Impl& r = *impl_;
-  r.context.MakeCurrent();
-  r.MoveClouds(request.stamp);
-  const std::vector<GpuActors::Placed> placed = r.actors.At(request.stamp);
-  const nav::Pose T_CW = request.T_WC.Inverse();
-  r.surfaces.Cull(T_CW, r.frustum);
-  r.shadows.Pick(placed, request.stamp, request.T_WC.p);
-  const bool by_actors =
-      r.surfaces.Any([&](const Eigen::AlignedBox3d& box) { return r.shadows.MayFallOn(box); });
-  if (by_actors) r.shadows.DrawPicked(r.actors);
-  r.shadows.standing().Bind(kSunMapUnit);
-  r.shadows.moving().Bind(kActorMapUnit);
+  if (impl_->close_up) throw std::logic_error("Renderer: a close-up gives radiance");
+  impl_->Draw(request);
+  impl_->Read(CV_8UC1, GL_UNSIGNED_BYTE, image);
+}
 
-  const PictureLight light = r.LightOf(request, T_CW);
-  const bool fog = light.extinction_1_m > 0.0F;
-  r.gl.BindFramebuffer(GL_FRAMEBUFFER, r.framebuffer);
-  r.gl.Viewport(0, 0, r.view.width_px, r.view.height_px);
-  r.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  r.DrawMask();
-  r.DrawActors(placed, T_CW, light, {.actor_shadow = by_actors, .fog = fog});
-  r.DrawSurfaces(light, {.actor_shadow = by_actors, .fog = fog});
-  r.DrawSky(T_CW, light);
-
-  image.create(r.view.height_px, r.view.width_px, CV_8UC1);
-  r.gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  r.gl.PixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(image.step1()));
-  r.gl.ReadPixels(0, 0, r.view.width_px, r.view.height_px, GL_RED, GL_UNSIGNED_BYTE, image.data);
+void Renderer::RenderRadiance(const RenderRequest& request, cv::Mat& image) {
+  const GlTurn turn;
+  if (!impl_->close_up) throw std::logic_error("Renderer: only a close-up gives radiance");
+  impl_->Draw(request);
+  impl_->Read(CV_32FC1, GL_FLOAT, image);
 }
 
 }  // namespace polnav::sim

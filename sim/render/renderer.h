@@ -15,6 +15,7 @@
 
 #include "nav/api/geometry.h"
 #include "nav/api/time.h"
+#include "sim/render/grain.h"
 #include "sim/render/pinhole_view.h"
 #include "sim/world/scene.h"
 #include "sky/skylight.h"
@@ -36,12 +37,17 @@ class Renderer {
   // for.
   Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
            const std::vector<Eigen::Vector2d>& unneeded_px = {});
+  // Of what is less than some metres away: with the ground's grain, for RenderRadiance alone.
+  Renderer(const Scene& scene, const sky::WorldSky& sky, const PinholeView& view,
+           const CloseUp& close_up);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   // Grey image CV_8UC1 of height x width.
   void Render(const RenderRequest& request, cv::Mat& image);
+  // Of a close-up: radiance times request.exposure, CV_32FC1.
+  void RenderRadiance(const RenderRequest& request, cv::Mat& image);
 
  private:
   struct Impl;

@@ -8,6 +8,8 @@ namespace polnav::sim {
 //   SUN_SHADOW   shadows of what stands still may end within the triangle
 //   ACTOR_SHADOW shadows of what moves may fall on it
 //   FOG
+//   CLOSE_UP     places are relative to the eye, to a float's last bit near it, and surfaces have
+//                a grain
 // light: from sky and from sun, times albedo.
 inline constexpr const char* kSurfaceVertexShader = R"(
 layout(location = 0) in vec3 p;
@@ -40,9 +42,20 @@ out vec3 in_sun_map;
 uniform mat4 actor_map_from_W;
 out vec3 in_actor_map;
 #endif
-#ifdef FOG
+#if defined(FOG) || defined(CLOSE_UP)
 uniform vec3 eye_W;
+#endif
+#ifdef FOG
 out vec3 from_eye;
+#endif
+#ifdef CLOSE_UP
+uniform vec3 eye_rest_W;
+uniform vec3 fine_at_eye;
+uniform vec3 coarse_at_eye;
+uniform float fine_per_m;
+uniform vec3 coarse_per_m;
+out vec2 fine_uv;
+out vec2 coarse_uv;
 #endif
 void main() {
 #ifdef ACTOR
@@ -56,7 +69,15 @@ void main() {
 #else
   vec4 p_W = vec4(p, 1.0);
 #endif
+#ifdef CLOSE_UP
+  vec3 near = (p_W.xyz - eye_W) - eye_rest_W;
+  gl_Position = clip_from_W * vec4(near, 1.0);
+  fine_uv = fine_at_eye.xy + fine_per_m * near.xy;
+  coarse_uv = coarse_at_eye.xy + vec2(dot(coarse_per_m.xy, near.xy),
+                                      coarse_per_m.x * near.y - coarse_per_m.y * near.x);
+#else
   gl_Position = clip_from_W * p_W;
+#endif
   texture_uv = uv;
 #if defined(SUN_SHADOW) || defined(ACTOR_SHADOW)
   sky_grey = exposure * light.x;
@@ -98,6 +119,12 @@ in vec3 from_eye;
 uniform float extinction;
 uniform float airlight;
 #endif
+#ifdef CLOSE_UP
+in vec2 fine_uv;
+in vec2 coarse_uv;
+uniform sampler2D grain;
+uniform float grain_gain;
+#endif
 layout(location = 0) out vec4 color;
 void main() {
 #if defined(SUN_SHADOW) || defined(ACTOR_SHADOW)
@@ -111,6 +138,10 @@ void main() {
   float grey = sky_grey + sun_lit * sun_grey;
 #endif
   float seen = texture(reflectance, texture_uv).r * grey;
+#ifdef CLOSE_UP
+  float grains = texture(grain, fine_uv).r + texture(grain, coarse_uv).r - 1.0;
+  seen *= max(0.0, 1.0 + grain_gain * grains);
+#endif
 #ifdef FOG
   seen = mix(airlight, seen, exp(-extinction * length(from_eye)));
 #endif

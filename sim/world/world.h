@@ -35,6 +35,10 @@ struct WorldOptions {
   // `auto`, the scene where there are structures, traffic, actors or a scene file. The bare plaza
   // reaches over no road, so that sensors that look at the zenith see the open sky there.
   std::string sky_view = "auto";
+  // Of the ground's grains of 1 to 150 mm, one sigma over its mean reflectance: what the
+  // optical-flow camera follows, and no other camera sees. Asphalt has some 0.1 to 0.2, a swept
+  // floor a few hundredths.
+  double grain_contrast = 0.1;
   std::vector<Passer> passers;  // not a key: what the scenario's disturbances make pass
 
   template <typename Visitor>
@@ -48,8 +52,14 @@ struct WorldOptions {
     v("actors", actors);
     v("scene_file", scene_file);
     v("sky_view", sky_view, {"auto", "open", "scene"});
+    v("grain_contrast", grain_contrast, {.min = 0.0, .max = 1.0});
   }
 };
+
+// Of what a plaza.texture_contrast leaves.
+[[nodiscard]] inline double GrainContrast(const WorldOptions& options) {
+  return options.grain_contrast * options.plaza.texture_contrast;
+}
 
 // True: what stands and moves around hides the sky from sensors. Whatever sensors there are.
 [[nodiscard]] bool HidesSky(const WorldOptions& options);

@@ -62,6 +62,12 @@ TEST_F(Replayed, StereoImuAndPolarimeterWithFaults) {
   ExpectSame(live, outcome.record);
 }
 
+TEST_F(Replayed, OpticalFlow) {
+  const RunRecord live = Live("five_laps", "0.5", {{"sensors.optical_flow={}", "test"}});
+  EXPECT_EQ(live.streams.at("flow").count, 25U);
+  ExpectSame(live, Replay().record);
+}
+
 // What is recorded is what the sensors said, so that faults can come and go afterwards.
 TEST_F(Replayed, FaultsAreNotInTheRecording) {
   const RunRecord calm = Live("five_laps", "1", {{"faults=[]", "test"}});

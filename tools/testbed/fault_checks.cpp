@@ -19,6 +19,7 @@ std::vector<std::string> SensorsOnBoard(const sim::SensorOptions& sensors, sim::
   if (sensors.polarimeter) names.emplace_back("polarimeter");
   if (sensors.polarization_camera) names.emplace_back("polarization_camera");
   if (sensors.reference) names.emplace_back("reference");
+  if (sensors.optical_flow) names.emplace_back("flow");
   return names;
 }
 

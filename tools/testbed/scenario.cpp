@@ -13,6 +13,7 @@
 #include "tools/testbed/disturbance_checks.h"
 #include "tools/testbed/estimators.h"
 #include "tools/testbed/fault_checks.h"
+#include "tools/testbed/flow_checks.h"
 #include "tools/testbed/level_checks.h"
 #include "tools/testbed/metrics.h"
 #include "tools/testbed/option_loader.h"
@@ -44,6 +45,7 @@ void CheckRates(const YamlDocument& document, const sim::SensorOptions& sensors)
   check("polarimeter", sensors.polarimeter);
   check("polarization_camera", sensors.polarization_camera);
   check("reference", sensors.reference);
+  check("optical_flow", sensors.optical_flow);
 }
 
 void CheckStereo(const YamlDocument& document,
@@ -210,6 +212,7 @@ Scenario FromDocument(YamlDocument document, const std::vector<ScenarioOverride>
   CheckRates(document, scenario.sensors);
   CheckStereo(document, scenario.sensors.stereo);
   CheckPolarizationCamera(document, scenario.sensors.polarization_camera);
+  CheckFlow(document, scenario);
   CheckDisturbances(document, scenario);
   CheckOutages(document, scenario);
   CheckListening(document, scenario, level);

@@ -46,6 +46,14 @@ void AddDue(int t_ms, const sim::SensorOptions& sensors, std::vector<DatasetItem
     say(light);
     say(nav::ReferencePose{stamp, OddPose(t_ms + 5), OddVector(t_ms), t_ms % 100 == 0});
   }
+  if (t_ms > 0 && t_ms % 20 == 0) {
+    nav::OpticalFlowSample flow{.stamp = stamp, .integration = 20'000'000 - t_ms};
+    flow.flow_rad = {Odd(t_ms), Odd(t_ms + 1)};
+    flow.gyro_rad = OddVector(t_ms + 2);
+    if (t_ms % 40 == 0) flow.range_m = 0.4 + Odd(t_ms + 3);
+    flow.quality = 0.5 + Odd(t_ms + 4);
+    say(flow);
+  }
   if (t_ms % 100 == 0) {
     const cv::Size pair(sensors.stereo->width_px, sensors.stereo->height_px);
     say(nav::StereoImages{stamp, Noise(pair, CV_8UC1, t_ms), Noise(pair, CV_8UC1, t_ms + 1)});
@@ -68,6 +76,7 @@ sensors:
   polarimeter: {rate_hz: 20}
   polarization_camera: {width_px: 32, height_px: 24, bits: 12}
   reference: {rate_hz: 20}
+  optical_flow: {rate_hz: 50}
 estimators: {run: [stereo]}
 )",
                        "small.yaml");

@@ -117,7 +117,7 @@ TEST_F(Euroc, WithoutTruthThereIsNone) {
 // Epochs of today, EuRoC's 17 columns, Windows line ends.
 TEST_F(Euroc, OthersTimeCountsFromTheirFirstStamp) {
   MakeForeign(root_);
-  for (const char* sensor : {"cam0", "cam1", "pol0", "ref0", "polcam0"}) {
+  for (const char* sensor : {"cam0", "cam1", "pol0", "ref0", "polcam0", "flow0"}) {
     fs::remove_all(mav0_ / sensor);
   }
   WriteText(In("imu0/data.csv"),

@@ -17,7 +17,7 @@ ReplayOutcome ReplayOf(const std::filesystem::path& folder) {
 }
 
 // The first true pose is at 100 ms: until then there are 9 samples of the IMU (at 100 Hz, none at
-// zero), 2 of polarimeter and reference (20 Hz), one picture of each kind.
+// zero), 2 of polarimeter and reference (20 Hz), 4 of flow (50 Hz), one picture of each kind.
 TEST(Replay, WhatComesBeforeTheFirstTruthIsPassedOver) {
   const TemporaryFolder folder;
   const Scenario scenario = SmallScenario();
@@ -26,7 +26,7 @@ TEST(Replay, WhatComesBeforeTheFirstTruthIsPassedOver) {
   items.erase(items.begin());
   WriteRecording(folder.path(), scenario, items);
   const ReplayOutcome outcome = ReplayOf(folder.path());
-  EXPECT_EQ(outcome.before_start, 9U + 2U + 2U + 1U + 1U);
+  EXPECT_EQ(outcome.before_start, 9U + 2U + 2U + 4U + 1U + 1U);
   EXPECT_EQ(outcome.record.streams.at("imu").count, 50U - 9U);
   EXPECT_EQ(outcome.record.streams.at("stereo").count, 5U);
   EXPECT_EQ(outcome.record.truth.front().stamp, 100'000'000);
@@ -41,7 +41,7 @@ TEST(Replay, EveryStreamIsHeardAndTimed) {
   const Scenario settings = ReplaySettings(dataset.info(), {});
   const RunRecord record =
       Replay(std::move(dataset), settings, [&](double f) { fractions.push_back(f); }).record;
-  EXPECT_EQ(record.streams.size(), 6U);
+  EXPECT_EQ(record.streams.size(), 7U);
   EXPECT_EQ(record.timing.at("front_end").ms.size(), 6U);
   EXPECT_EQ(record.sim_duration_s, 0.5);
   EXPECT_EQ(fractions.front(), 0.0);

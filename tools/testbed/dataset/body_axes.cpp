@@ -47,6 +47,7 @@ void BodyAxes::Apply(nav::Rig& rig) const {
   if (rig.stereo) rig.stereo->left.T_BC = T_PB * rig.stereo->left.T_BC;
   if (rig.stereo) rig.stereo->right.T_BC = T_PB * rig.stereo->right.T_BC;
   if (rig.imu) rig.imu->T_BI = T_PB * rig.imu->T_BI;
+  if (rig.optical_flow) rig.optical_flow->T_BF = T_PB * rig.optical_flow->T_BF;
   if (rig.polarimeter) rig.polarimeter->T_BS = T_PB * rig.polarimeter->T_BS;
   if (rig.polarization_camera) {
     rig.polarization_camera->T_BS = T_PB * rig.polarization_camera->T_BS;

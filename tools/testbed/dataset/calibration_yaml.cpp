@@ -83,6 +83,17 @@ Json ToYamlTree(const nav::PolarizationCameraCalibration& c, double rate_hz) {
   return yaml;
 }
 
+Json ToYamlTree(const nav::OpticalFlowCalibration& c) {
+  Json yaml = Common("optical_flow", "z along the optical axis", c.T_BF, c.rate_hz);
+  yaml["flow_noise_density"] = c.flow_noise_rad_s_sqrt_hz;
+  yaml["flow_scale_sigma"] = c.flow_scale_sigma;
+  yaml["mount_sigma_rad"] = c.mount_sigma_rad;
+  yaml["range_sigma_m"] = c.range_sigma_m;
+  yaml["range_min_m"] = c.range_min_m;
+  yaml["range_max_m"] = c.range_max_m;
+  return yaml;
+}
+
 std::array<double, 4> FourNumbers(const SensorSection& section, const std::string& key) {
   const std::vector<double> values = section.Numbers(key, 4);
   return {values[0], values[1], values[2], values[3]};
@@ -138,6 +149,7 @@ std::vector<SensorYaml> SensorYamls(const nav::Rig& rig, const sim::SensorOption
     files.push_back({"polcam0", ToYamlTree(*rig.polarization_camera,
                                            sensors.polarization_camera.value().rate_hz)});
   }
+  if (rig.optical_flow) files.push_back({"flow0", ToYamlTree(*rig.optical_flow)});
   if (sensors.reference) {
     files.push_back({"ref0", Common("reference", "a GNSS/INS's own solution, T_WB", {},
                                     sensors.reference->rate_hz)});
@@ -217,6 +229,23 @@ nav::PolarizationCameraCalibration PolarizationCameraFrom(const SensorSection& s
   if (section.Has("covariance")) {
     const std::vector<double> values = section.Matrix("covariance", nav::kInstrumentErrors);
     c.covariance = Eigen::Map<const nav::InstrumentCovariance>(values.data()).transpose();
+  }
+  return c;
+}
+
+nav::OpticalFlowCalibration OpticalFlowFrom(const SensorSection& section) {
+  nav::OpticalFlowCalibration c;
+  c.T_BF = section.MountPose();
+  c.rate_hz = section.Number("rate_hz", kPositive);
+  c.flow_noise_rad_s_sqrt_hz = section.Number("flow_noise_density", kSigma);
+  c.flow_scale_sigma = section.NumberOr("flow_scale_sigma", 0.0, kSigma);
+  c.mount_sigma_rad = section.NumberOr("mount_sigma_rad", 0.0, kSigma);
+  c.range_sigma_m = section.Number("range_sigma_m", kSigma);
+  c.range_min_m = section.Number("range_min_m", kSigma);
+  c.range_max_m = section.Number("range_max_m", kPositive);
+  if (!(c.range_min_m < c.range_max_m)) {
+    section.Fail("range_min_m",
+                 fmt::format("{} m is not below range_max_m, {} m", c.range_min_m, c.range_max_m));
   }
   return c;
 }

@@ -31,6 +31,7 @@ struct SensorYaml {
 [[nodiscard]] nav::PolarimeterCalibration PolarimeterFrom(const SensorSection& section);
 [[nodiscard]] nav::PolarizationCameraCalibration PolarizationCameraFrom(
     const SensorSection& section);
+[[nodiscard]] nav::OpticalFlowCalibration OpticalFlowFrom(const SensorSection& section);
 
 // The second camera is to the right of the first, both have pictures of one size.
 void CheckPair(const nav::StereoCalibration& stereo, const SensorSection& right);

@@ -66,6 +66,9 @@ std::optional<DatasetItem> Dataset::Load(const DatasetEntry& entry) {
     return nav::Measurement(*light);
   }
   if (const auto* pose = std::get_if<nav::ReferencePose>(&entry)) return nav::Measurement(*pose);
+  if (const auto* flow = std::get_if<nav::OpticalFlowSample>(&entry)) {
+    return nav::Measurement(*flow);
+  }
   problems_.push_back(std::get<BrokenFrame>(entry).problem);
   return std::nullopt;
 }

@@ -2,9 +2,9 @@
 //
 // EuRoC ASL folders [Burri2016], Polnav's own recordings among them, and KITTI odometry sequences
 // [Geiger2012]. All streams are merged by stamp; at equal stamps in the order in which the
-// simulator emits them: truth, imu, polarimeter, reference, stereo, polarization_camera. Pictures
-// are loaded one at a time, when it is their turn; one that is missing, unreadable or of another
-// size is noted and left out.
+// simulator emits them: truth, imu, polarimeter, reference, flow, stereo, polarization_camera.
+// Pictures are loaded one at a time, when it is their turn; one that is missing, unreadable or of
+// another size is noted and left out.
 #pragma once
 
 #include <filesystem>
@@ -49,8 +49,9 @@ struct BrokenFrame {
   std::string problem;
 };
 
-using DatasetEntry = std::variant<sim::Truth, nav::ImuSample, nav::PolarizationSample,
-                                  nav::ReferencePose, PairFiles, MosaicFile, BrokenFrame>;
+using DatasetEntry =
+    std::variant<sim::Truth, nav::ImuSample, nav::PolarizationSample, nav::ReferencePose,
+                 nav::OpticalFlowSample, PairFiles, MosaicFile, BrokenFrame>;
 
 // One stream, in order of stamps; nothing at its end. Throws InputError for a broken line.
 using EntrySource = std::function<std::optional<DatasetEntry>()>;

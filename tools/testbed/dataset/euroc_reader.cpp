@@ -29,7 +29,7 @@ nav::Rig ReadRig(const fs::path& mav0, const std::optional<RigFile>& file) {
   const auto section = [&](const std::string& sensor) {
     return SectionOf(file, sensor, mav0 / sensor / "sensor.yaml");
   };
-  for (const char* sensor : {"cam0", "cam1", "imu0", "pol0", "polcam0"}) {
+  for (const char* sensor : {"cam0", "cam1", "imu0", "pol0", "polcam0", "flow0"}) {
     if (HasSection(file, sensor) && !Has(mav0, sensor)) {
       FailAt(*file, sensor, "the dataset has no such sensor");
     }
@@ -42,6 +42,7 @@ nav::Rig ReadRig(const fs::path& mav0, const std::optional<RigFile>& file) {
   if (Has(mav0, "imu0")) rig.imu = ImuFrom(section("imu0"));
   if (Has(mav0, "pol0")) rig.polarimeter = PolarimeterFrom(section("pol0"));
   if (Has(mav0, "polcam0")) rig.polarization_camera = PolarizationCameraFrom(section("polcam0"));
+  if (Has(mav0, "flow0")) rig.optical_flow = OpticalFlowFrom(section("flow0"));
   return rig;
 }
 
@@ -148,6 +149,10 @@ std::vector<EntrySource> Sources(const fs::path& mav0, const DatasetInfo& info,
       return axes.Of(ReferenceFrom(reader, row));
     }));
   }
+  if (info.rig.optical_flow) {
+    sources.push_back(RowSource(
+        mav0 / "flow0", [](const auto& reader, const auto& row) { return FlowFrom(reader, row); }));
+  }
   if (info.rig.stereo) sources.push_back(PairSource(mav0));
   if (info.rig.polarization_camera) sources.push_back(MosaicSource(mav0 / "polcam0"));
   return sources;
@@ -159,6 +164,7 @@ std::vector<std::string> TablesOf(const DatasetInfo& info) {
   if (info.rig.imu) tables.emplace_back("imu0");
   if (info.rig.polarimeter) tables.emplace_back("pol0");
   if (info.has_reference) tables.emplace_back("ref0");
+  if (info.rig.optical_flow) tables.emplace_back("flow0");
   if (info.rig.stereo) tables.insert(tables.end(), {"cam0", "cam1"});
   if (info.rig.polarization_camera) tables.emplace_back("polcam0");
   return tables;
@@ -185,7 +191,7 @@ void FindTimes(const fs::path& mav0, DatasetInfo& info) {
 
 fs::path FindMav0(const fs::path& folder) {
   if (fs::is_directory(folder / "mav0")) return folder / "mav0";
-  for (const char* sensor : {"cam0", "imu0", "pol0", "polcam0"}) {
+  for (const char* sensor : {"cam0", "imu0", "pol0", "polcam0", "flow0"}) {
     if (Has(folder, sensor)) return folder;
   }
   return {};

@@ -59,6 +59,11 @@ const char* ReferenceHeader() {
          "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],gnss_aided []";
 }
 
+const char* FlowHeader() {
+  return "#timestamp [ns],integration [ns],flow_x [rad],flow_y [rad],gyro_x [rad],gyro_y [rad],"
+         "gyro_z [rad],range [m],quality []";
+}
+
 const char* TruthHeader() {
   return "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
          "q_RS_z [],v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
@@ -82,6 +87,15 @@ std::string RowOf(const nav::ReferencePose& pose) {
   std::vector<double> values = PoseValues(pose.T_WB);
   Append(pose.v_WB_m_s, values);
   return Row(pose.stamp, values) + (pose.gnss_aided ? ",1" : ",0");
+}
+
+// The time is no double: nanoseconds stay whole.
+std::string RowOf(const nav::OpticalFlowSample& sample) {
+  std::vector<double> values = {sample.flow_rad.x(), sample.flow_rad.y()};
+  Append(sample.gyro_rad, values);
+  values.push_back(sample.range_m.value_or(std::nan("")));
+  values.push_back(sample.quality);
+  return fmt::format("{},{},{}", sample.stamp, sample.integration, fmt::join(values, ","));
 }
 
 std::string RowOf(const sim::Truth& truth) {
@@ -113,6 +127,22 @@ nav::ReferencePose ReferenceFrom(const TableReader& reader, const TableRow& row)
           .T_WB = PoseAt(reader, row),
           .v_WB_m_s = VectorAt(reader, row, kPoseFields),
           .gnss_aided = reader.Number(row, kWithVelocity) != 0.0};
+}
+
+nav::OpticalFlowSample FlowFrom(const TableReader& reader, const TableRow& row) {
+  reader.ExpectFields(row, {8});
+  nav::OpticalFlowSample sample{.stamp = row.stamp};
+  const double integration_ns = reader.Number(row, 0);
+  if (!(integration_ns > 0.0 && integration_ns < 1e12)) {
+    reader.Fail(fmt::format("a flow is integrated over {} ns; expected more than 0, less than 1e12",
+                            integration_ns));
+  }
+  sample.integration = static_cast<nav::TimeNs>(std::llround(integration_ns));
+  sample.flow_rad = {reader.Number(row, 1), reader.Number(row, 2)};
+  sample.gyro_rad = VectorAt(reader, row, 3);
+  if (row.fields[6] != "nan") sample.range_m = reader.Number(row, 6);
+  sample.quality = reader.Number(row, 7);
+  return sample;
 }
 
 sim::Truth TruthFrom(const TableReader& reader, const TableRow& row) {

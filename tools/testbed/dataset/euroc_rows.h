@@ -2,7 +2,8 @@
 //
 //   imu0      w_x, w_y, w_z [rad/s], a_x, a_y, a_z [m/s^2], in the IMU's own axes
 //   pol0      six channels over full scale [-], in the order of nav::PolarizationSample
-//   ref0      p_WB [m], q_WB (w, x, y, z), v_WB [m/s] in W, gnss_aided (1 or 0)
+//   flow0     integration [ns], flow x, y [rad], gyro x, y, z [rad], range [m] (nan: no echo),
+//   quality ref0      p_WB [m], q_WB (w, x, y, z), v_WB [m/s] in W, gnss_aided (1 or 0)
 //   state_groundtruth_estimate0
 //             p_WB, q_WB (w, x, y, z), v_WB, b_w [rad/s], b_a [m/s^2], then Polnav's w_WB [rad/s]
 //             in B. Biases are not known here: nan. Reading, all after q_WB may be missing.
@@ -21,11 +22,13 @@ namespace polnav::testbed {
 [[nodiscard]] const char* ImuHeader();
 [[nodiscard]] const char* PolarimeterHeader();
 [[nodiscard]] const char* ReferenceHeader();
+[[nodiscard]] const char* FlowHeader();
 [[nodiscard]] const char* TruthHeader();
 
 [[nodiscard]] std::string RowOf(const nav::ImuSample& sample);
 [[nodiscard]] std::string RowOf(const nav::PolarizationSample& sample);
 [[nodiscard]] std::string RowOf(const nav::ReferencePose& pose);
+[[nodiscard]] std::string RowOf(const nav::OpticalFlowSample& sample);
 [[nodiscard]] std::string RowOf(const sim::Truth& truth);
 
 // The reader's last row; throw InputError when it is not as above.
@@ -33,6 +36,7 @@ namespace polnav::testbed {
 [[nodiscard]] nav::PolarizationSample PolarimeterFrom(const TableReader& reader,
                                                       const TableRow& row);
 [[nodiscard]] nav::ReferencePose ReferenceFrom(const TableReader& reader, const TableRow& row);
+[[nodiscard]] nav::OpticalFlowSample FlowFrom(const TableReader& reader, const TableRow& row);
 [[nodiscard]] sim::Truth TruthFrom(const TableReader& reader, const TableRow& row);
 
 }  // namespace polnav::testbed

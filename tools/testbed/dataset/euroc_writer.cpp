@@ -49,6 +49,7 @@ const char* HeaderOf(const std::string& sensor) {
   if (sensor == "imu0") return ImuHeader();
   if (sensor == "pol0") return PolarimeterHeader();
   if (sensor == "ref0") return ReferenceHeader();
+  if (sensor == "flow0") return FlowHeader();
   return PictureHeader();
 }
 
@@ -111,6 +112,8 @@ void EurocWriter::Write(const nav::Measurement& measurement) {
     AddRow("pol0", RowOf(*light));
   } else if (const auto* reference = std::get_if<nav::ReferencePose>(&measurement)) {
     AddRow("ref0", RowOf(*reference));
+  } else if (const auto* flow = std::get_if<nav::OpticalFlowSample>(&measurement)) {
+    AddRow("flow0", RowOf(*flow));
   } else if (const auto* pair = std::get_if<nav::StereoImages>(&measurement)) {
     AddPicture("cam0", pair->stamp, pair->left);
     AddPicture("cam1", pair->stamp, pair->right);

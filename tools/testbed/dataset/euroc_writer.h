@@ -1,8 +1,8 @@
 // How does a run become a dataset on disk?
 //
-// A folder in EuRoC's ASL layout [Burri2016], extended in its manner by pol0, polcam0 and ref0;
-// docs/datasets.md has the whole layout. Everything is on disk as soon as Write returns: a run that
-// breaks off leaves a dataset that is short, not broken. Pictures are lossless.
+// A folder in EuRoC's ASL layout [Burri2016], extended in its manner by pol0, polcam0, flow0 and
+// ref0; docs/datasets.md has the whole layout. Everything is on disk as soon as Write returns: a
+// run that breaks off leaves a dataset that is short, not broken. Pictures are lossless.
 #pragma once
 
 #include <filesystem>

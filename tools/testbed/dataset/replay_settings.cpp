@@ -77,6 +77,7 @@ Scenario ReplaySettings(const DatasetInfo& info, const std::vector<ScenarioOverr
   Equip(info.rig.imu.has_value(), scenario.sensors.imu);
   Equip(info.rig.polarimeter.has_value(), scenario.sensors.polarimeter);
   Equip(info.rig.polarization_camera.has_value(), scenario.sensors.polarization_camera);
+  Equip(info.rig.optical_flow.has_value(), scenario.sensors.optical_flow);
   Equip(info.has_reference, scenario.sensors.reference);
   CheckListening(document, scenario);
   return scenario;

@@ -11,7 +11,7 @@ namespace polnav::testbed {
 namespace {
 
 const std::vector<std::string>& Known() {
-  static const std::vector<std::string> names{"cam0", "cam1", "imu0", "pol0", "polcam0"};
+  static const std::vector<std::string> names{"cam0", "cam1", "imu0", "pol0", "polcam0", "flow0"};
   return names;
 }
 

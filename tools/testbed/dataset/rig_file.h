@@ -1,7 +1,7 @@
 // Which calibrations does the user put in the place of the dataset's?
 //
-// One YAML file: a section a sensor (cam0, cam1, imu0, pol0, polcam0), each with the keys that its
-// sensor.yaml would have.
+// One YAML file: a section a sensor (cam0, cam1, imu0, pol0, polcam0, flow0), each with the keys
+// that its sensor.yaml would have.
 #pragma once
 
 #include <filesystem>
