@@ -26,6 +26,8 @@ Json ScenarioSchema() { return OptionSchema<Scenario>(); }
 struct Parsed {
   RunArguments run;
   ReplayArguments replay;
+  StudyArguments study;
+  MergeArguments merge;
   EvaluateArguments evaluate;
   SkyArguments sky;
   CompassArguments compass;
@@ -76,6 +78,29 @@ CLI::App* AddReplay(CLI::App& app, ReplayArguments& a) {
   replay->add_flag("--quiet", a.quiet, "Print nothing but failures and warnings");
   replay->add_flag("--json", a.json, "Print result.json instead of the table");
   return replay;
+}
+
+CLI::App* AddStudy(CLI::App& app, StudyArguments& a) {
+  CLI::App* study = app.add_subcommand("study", "Monte Carlo: many trials; resumes by itself");
+  study->add_option("STUDY", a.study, "Study file (YAML)")->required();
+  study->add_option("--out", a.out, "Result file (default: out/<study>.sqlite)");
+  study->add_option("--trials", a.trials, "Samples of each case");
+  study->add_option("--level", a.level, "What the sensors deliver: image, measurement");
+  study->add_option("--jobs", a.jobs, "Trials at once (default: one a processor)")
+      ->check(CLI::Range(1, 1024));
+  study->add_option("--shard", a.shard, "Only part K of N: K/N");
+  study->add_option("--trial", a.trial, "Run this one again and compare it with the record");
+  study->add_flag("--retry-failed", a.retry_failed, "Run again what did not go ok");
+  study->add_flag("--quiet", a.quiet, "Print nothing but failures");
+  return study;
+}
+
+CLI::App* AddMerge(CLI::App& app, MergeArguments& a) {
+  CLI::App* merge = app.add_subcommand("merge", "Join shards of a study into one file");
+  merge->add_option("OUT", a.out, "Result file; made, or added to")->required();
+  merge->add_option("IN", a.inputs, "Result files of the shards")->required();
+  merge->add_flag("--quiet", a.quiet, "Print nothing but failures");
+  return merge;
 }
 
 CLI::App* AddEvaluate(CLI::App& app, EvaluateArguments& a) {
@@ -160,6 +185,8 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   app.require_subcommand(0, 1);
   const CLI::App* run = AddRun(app, parsed.run);
   const CLI::App* replay = AddReplay(app, parsed.replay);
+  const CLI::App* study = AddStudy(app, parsed.study);
+  const CLI::App* merge = AddMerge(app, parsed.merge);
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
   const CLI::App* sky = AddSky(app, parsed.sky);
   const CLI::App* compass = AddCompass(app, parsed.compass);
@@ -182,6 +209,8 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
     parsed.replay.command_line = Joined(arguments);
     return ReplayDataset(parsed.replay, console);
   }
+  if (study->parsed()) return Study(parsed.study, console, closed_loop);
+  if (merge->parsed()) return Merge(parsed.merge, console);
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
   if (sky->parsed()) return Sky(parsed.sky, console);
   if (compass->parsed()) return CompassReadings(parsed.compass, console);

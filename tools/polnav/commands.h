@@ -38,6 +38,24 @@ struct ReplayArguments {
   std::string command_line;
 };
 
+struct StudyArguments {
+  std::string study;
+  std::string out;                    // file; empty: out/<study's file name>.sqlite
+  std::optional<std::string> trials;  // checked with the study, as every key is
+  std::optional<std::string> level;
+  std::optional<int> jobs;           // absent: as many as processors
+  std::optional<std::string> shard;  // K/N; absent: as Slurm or Kubernetes say, or all
+  std::optional<std::uint64_t> trial;
+  bool retry_failed = false;
+  bool quiet = false;
+};
+
+struct MergeArguments {
+  std::string out;
+  std::vector<std::string> inputs;
+  bool quiet = false;
+};
+
 struct EvaluateArguments {
   std::string truth;
   std::string estimate;
@@ -93,6 +111,13 @@ struct CompassArguments {
 
 // Recorded instead of simulated: estimate, score; write and print the results.
 [[nodiscard]] int ReplayDataset(const ReplayArguments& arguments, const Console& console);
+
+// Run what is missing of a study, or one of its trials again.
+[[nodiscard]] int Study(const StudyArguments& arguments, const Console& console,
+                        const ClosedLoop& closed_loop);
+
+// Shards of a study into one file.
+[[nodiscard]] int Merge(const MergeArguments& arguments, const Console& console);
 
 // Compare two TUM files.
 [[nodiscard]] int Evaluate(const EvaluateArguments& arguments, const Console& console);

@@ -17,6 +17,18 @@ std::string Describe(const YAML::Node& node) {
   return fmt::format("'{}'", node.Scalar());
 }
 
+// On one line; reads back as the same value.
+std::string FlowText(const YAML::Node& node) {
+  if (node.IsNull()) return "null";
+  if (node.IsScalar() && node.Tag() != "!") return node.Scalar();
+  YAML::Emitter out;
+  out.SetSeqFormat(YAML::Flow);
+  out.SetMapFormat(YAML::Flow);
+  if (node.IsScalar()) out << YAML::DoubleQuoted;
+  out << node;
+  return out.c_str();
+}
+
 // The whole text as a number, whatever the locale; YAML's octal and hexadecimal are refused.
 template <typename Number>
 std::optional<Number> ParseNumber(std::string_view text) {
@@ -190,6 +202,40 @@ void OptionLoader::operator()(const char* key, std::vector<Eigen::Vector2d>& val
   value.clear();
   for (std::size_t i = 0; i < CheckedListSize(node, key); ++i) {
     TakeNumbers(node[i], key, range, value.emplace_back().data(), 2);
+  }
+}
+
+void OptionLoader::operator()(const char* key, std::vector<double>& value, OptionRange range) {
+  const YAML::Node node = Take(key);
+  if (!node.IsDefined()) return;
+  value.resize(CheckedListSize(node, key));
+  TakeNumbers(node, key, range, value.data(), value.size());
+}
+
+void OptionLoader::operator()(const char* key, std::vector<std::vector<double>>& rows,
+                              OptionRange range) {
+  const YAML::Node node = Take(key);
+  if (!node.IsDefined()) return;
+  rows.resize(CheckedListSize(node, key));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].resize(CheckedListSize(node[i], key));
+    TakeNumbers(node[i], key, range, rows[i].data(), rows[i].size());
+  }
+}
+
+void OptionLoader::operator()(const char* key, NamedLists& lists) {
+  const YAML::Node node = Take(key);
+  if (!node.IsDefined() || node.IsNull()) return;
+  if (!node.IsMap()) Fail(key, "expected a section of lists, got " + Describe(node));
+  lists.items.clear();
+  for (const auto& entry : node) {
+    NamedLists::Item& item = lists.items.emplace_back();
+    item.name = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (!entry.second.IsSequence() || entry.second.size() == 0) {
+      FailAt(document_, JoinKey(JoinKey(path_, key), item.name),
+             "expected a list of values, got " + Describe(entry.second));
+    }
+    for (const auto& value : entry.second) item.values.push_back(FlowText(value));
   }
 }
 

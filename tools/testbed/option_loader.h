@@ -28,6 +28,9 @@ class OptionLoader {
   void operator()(const char* key, std::uint64_t& value);
   void operator()(const char* key, Eigen::Vector3d& value, OptionRange range = {});
   void operator()(const char* key, std::vector<Eigen::Vector2d>& value, OptionRange range = {});
+  void operator()(const char* key, std::vector<double>& value, OptionRange range = {});
+  void operator()(const char* key, std::vector<std::vector<double>>& rows, OptionRange range = {});
+  void operator()(const char* key, NamedLists& lists);
   void operator()(const char* key, bool& value);
   void operator()(const char* key, std::string& value);
   void operator()(const char* key, std::string& value, OptionChoices choices);

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace polnav::testbed {
 
@@ -17,6 +18,15 @@ struct OptionRange {
 };
 
 using OptionChoices = std::initializer_list<const char*>;
+
+// A section whose keys are free: each names a list of values, kept as text that reads back as YAML.
+struct NamedLists {
+  struct Item {
+    std::string name;
+    std::vector<std::string> values;
+  };
+  std::vector<Item> items;  // in the file's order
+};
 
 // "[0.1, 500]", "at least 0", "at most 1"; empty when every number is allowed.
 [[nodiscard]] std::string RangeText(const OptionRange& range);

@@ -36,6 +36,16 @@ class ValueWriter {
     tree_[key] = Json::array();
     for (const Eigen::Vector2d& p : value) tree_[key].push_back({p.x(), p.y()});
   }
+  void operator()(const char* key, std::vector<double>& value, OptionRange = {}) {
+    tree_[key] = value;
+  }
+  void operator()(const char* key, std::vector<std::vector<double>>& rows, OptionRange = {}) {
+    tree_[key] = rows;
+  }
+  void operator()(const char* key, NamedLists& lists) {
+    tree_[key] = Json::object();
+    for (const NamedLists::Item& item : lists.items) tree_[key][item.name] = item.values;
+  }
   void operator()(const char* key, std::optional<double>& value, OptionRange = {}) {
     if (value) tree_[key] = *value;
   }
@@ -111,6 +121,15 @@ class SchemaWriter {
     Add(key, {{"type", "array"},
               {"items", {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}}}});
   }
+  void operator()(const char* key, std::vector<double>&, OptionRange range = {}) {
+    Add(key, {{"type", "array"}, {"items", NumberSchema(range)}});
+  }
+  void operator()(const char* key, std::vector<std::vector<double>>&, OptionRange range = {}) {
+    Add(key, {{"type", "array"}, {"items", {{"type", "array"}, {"items", NumberSchema(range)}}}});
+  }
+  void operator()(const char* key, NamedLists&) {
+    Add(key, {{"type", "object"}, {"additionalProperties", {{"type", "array"}, {"minItems", 1}}}});
+  }
   template <typename T>
   void operator()(const char* key, std::optional<T>& section) {
     T value = section.value_or(T{});
@@ -138,6 +157,11 @@ class SchemaWriter {
     SchemaWriter writer;
     section.Visit(writer);
     return writer.Schema();
+  }
+  static Json NumberSchema(const OptionRange& range) {
+    Json number = {{"type", "number"}};
+    AddRange(number, range);
+    return number;
   }
   static std::vector<std::string> Names(OptionChoices choices) {
     return {choices.begin(), choices.end()};
