@@ -64,8 +64,7 @@ double WilcoxonTest(std::span<const double> differences) {
   return std::min(1.0, 2.0 * boost::math::cdf(boost::math::normal(), z));
 }
 
-PairedComparison Compare(std::span<const double> a, std::span<const double> b,
-                         std::uint64_t seed) {
+PairedComparison Compare(std::span<const double> a, std::span<const double> b, std::uint64_t seed) {
   if (a.size() != b.size()) throw std::logic_error("pairs of unequal length");
   PairedComparison comparison{.pairs = a.size()};
   if (a.empty()) return comparison;

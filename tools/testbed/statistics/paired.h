@@ -15,7 +15,7 @@ struct PairedComparison {
   std::uint64_t higher = 0;  // a > b
   Estimated mean_difference;
   Estimated median_difference;
-  Estimated improvement;  // 1 - mean(a) / mean(b)
+  Estimated improvement;   // 1 - mean(a) / mean(b)
   double sign_test = 1.0;  // p, two-sided: that neither is lower more often
   double wilcoxon = 1.0;   // p, two-sided: that differences are symmetric about zero
 };

@@ -41,12 +41,12 @@ Interval ExactRateInterval(std::uint64_t successes, std::uint64_t trials) {
   const auto n = static_cast<double>(trials);
   Interval interval{0.0, 1.0};
   if (successes > 0) {
-    interval.lower = boost::math::quantile(boost::math::beta_distribution(x, n - x + 1.0),
-                                           0.5 * kAlpha);
+    interval.lower =
+        boost::math::quantile(boost::math::beta_distribution(x, n - x + 1.0), 0.5 * kAlpha);
   }
   if (successes < trials) {
-    interval.upper = boost::math::quantile(boost::math::beta_distribution(x + 1.0, n - x),
-                                           1.0 - 0.5 * kAlpha);
+    interval.upper =
+        boost::math::quantile(boost::math::beta_distribution(x + 1.0, n - x), 1.0 - 0.5 * kAlpha);
   }
   return interval;
 }

@@ -32,7 +32,8 @@ bool SpansDecades(std::span<const double> input) {
 Eigen::VectorXd Regressor(std::span<const double> input) {
   const bool logarithm = SpansDecades(input);
   std::vector<double> x(input.begin(), input.end());
-  if (logarithm) std::transform(x.begin(), x.end(), x.begin(), [](double v) { return std::log(v); });
+  if (logarithm)
+    std::transform(x.begin(), x.end(), x.begin(), [](double v) { return std::log(v); });
   const Moments m = ComputeMoments(x);
   if (m.sigma == 0.0) return {};
   const Eigen::Map<const Eigen::VectorXd> values(x.data(), static_cast<Eigen::Index>(x.size()));

@@ -111,12 +111,11 @@ void AddPairs(const StudyTable& table, const std::vector<std::string>& metrics, 
       const auto b = table.Read(table.estimators()[j], metrics);
       for (std::size_t c = 0; c < a.size(); ++c) {
         for (std::size_t m = 0; m < metrics.size(); ++m) {
-          const ValuePairs pairs = PairUp(a[c].trials, a[c].columns[m].values, b[c].trials,
-                                          b[c].columns[m].values);
+          const ValuePairs pairs =
+              PairUp(a[c].trials, a[c].columns[m].values, b[c].trials, b[c].columns[m].values);
           if (pairs.a.empty()) continue;
-          Json json = {{"a", table.estimators()[i]},
-                       {"b", table.estimators()[j]},
-                       {"metric", metrics[m]}};
+          Json json = {
+              {"a", table.estimators()[i]}, {"b", table.estimators()[j]}, {"metric", metrics[m]}};
           json.update(ToJson(Compare(pairs.a, pairs.b, table.seed())));
           cases[c]["paired"].push_back(json);
         }
@@ -163,16 +162,16 @@ Json Aggregate(const StudyTable& table) {
   std::uint64_t finished = 0;
   for (const TableCase& c : table.cases()) finished += c.Finished();
   const std::string asked = table.Meta("trials");
-  Json aggregate = {{"study", table.Meta("name")},
-                    {"identity", table.Meta("identity")},
-                    {"polnav_version", table.Meta("polnav_version")},
-                    {"level", table.Meta("level")},
-                    {"seed", table.seed()},
-                    {"confidence", kConfidence},
-                    {"trials", finished},
-                    {"complete", asked.empty() ||
-                                     finished >= std::stoull(asked) * table.cases().size()},
-                    {"cases", cases}};
+  Json aggregate = {
+      {"study", table.Meta("name")},
+      {"identity", table.Meta("identity")},
+      {"polnav_version", table.Meta("polnav_version")},
+      {"level", table.Meta("level")},
+      {"seed", table.seed()},
+      {"confidence", kConfidence},
+      {"trials", finished},
+      {"complete", asked.empty() || finished >= std::stoull(asked) * table.cases().size()},
+      {"cases", cases}};
   aggregate["criteria"] = Json::array();
   for (const StudyVerdict& verdict : JudgeCriteria(table)) {
     aggregate["criteria"].push_back(ToJson(verdict));

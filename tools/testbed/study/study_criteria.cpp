@@ -142,8 +142,8 @@ std::vector<StudyVerdict> JudgeCriteria(const StudyTable& table) {
         verdict.n = values.size();
         verdict.actual = StatisticOf(criterion.statistic, std::move(values), table.seed());
       } else {
-        ValuePairs pairs = PairUp(mine[c].trials, ValuesOf(mine[c]), other[c].trials,
-                                  ValuesOf(other[c]));
+        ValuePairs pairs =
+            PairUp(mine[c].trials, ValuesOf(mine[c]), other[c].trials, ValuesOf(other[c]));
         for (std::size_t i = 0; i < pairs.a.size(); ++i) pairs.a[i] -= pairs.b[i];
         verdict.n = pairs.a.size();
         verdict.actual = StatisticOf(criterion.statistic, std::move(pairs.a), table.seed());
@@ -156,9 +156,12 @@ std::vector<StudyVerdict> JudgeCriteria(const StudyTable& table) {
 }
 
 Json ToJson(const StudyVerdict& verdict) {
-  return {{"name", verdict.name},         {"case", verdict.label},
-          {"expected", verdict.expected}, {"n", verdict.n},
-          {"actual", ToJson(verdict.actual)}, {"passed", verdict.passed}};
+  return {{"name", verdict.name},
+          {"case", verdict.label},
+          {"expected", verdict.expected},
+          {"n", verdict.n},
+          {"actual", ToJson(verdict.actual)},
+          {"passed", verdict.passed}};
 }
 
 bool AllCriteriaHold(const Json& aggregate) {
@@ -176,9 +179,10 @@ std::string StudyJUnitXml(const Json& aggregate) {
       "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\">\n",
       suite, criteria.size(), failures);
   for (const Json& c : criteria) {
-    const std::string name = c["name"].get<std::string>() + " [" + c["case"].get<std::string>() + "]";
-    xml += fmt::format("    <testcase classname=\"polnav.{}\" name=\"{}\"", suite,
-                       EscapeMarkup(name));
+    const std::string name =
+        c["name"].get<std::string>() + " [" + c["case"].get<std::string>() + "]";
+    xml +=
+        fmt::format("    <testcase classname=\"polnav.{}\" name=\"{}\"", suite, EscapeMarkup(name));
     if (c["passed"].get<bool>()) {
       xml += "/>\n";
       continue;
@@ -189,9 +193,9 @@ std::string StudyJUnitXml(const Json& aggregate) {
                                 : fmt::format("{} [{}, {}] of {} values", actual["value"].dump(),
                                               actual["lower"].dump(), actual["upper"].dump(),
                                               c["n"].get<std::size_t>());
-    xml += fmt::format(
-        ">\n      <failure message=\"{}\"/>\n    </testcase>\n",
-        EscapeMarkup("expected " + c["expected"].get<std::string>() + ", got " + got));
+    xml +=
+        fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n",
+                    EscapeMarkup("expected " + c["expected"].get<std::string>() + ", got " + got));
   }
   return xml + "  </testsuite>\n</testsuites>\n";
 }
