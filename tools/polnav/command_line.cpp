@@ -26,6 +26,7 @@ Json ScenarioSchema() { return OptionSchema<Scenario>(); }
 struct Parsed {
   RunArguments run;
   ReplayArguments replay;
+  ReportArguments report;
   EvaluateArguments evaluate;
   SkyArguments sky;
   CompassArguments compass;
@@ -76,6 +77,16 @@ CLI::App* AddReplay(CLI::App& app, ReplayArguments& a) {
   replay->add_flag("--quiet", a.quiet, "Print nothing but failures and warnings");
   replay->add_flag("--json", a.json, "Print result.json instead of the table");
   return replay;
+}
+
+CLI::App* AddReport(CLI::App& app, ReportArguments& a) {
+  CLI::App* report = app.add_subcommand("report", "Statistics and HTML report of a study");
+  report->add_option("PATH", a.path, "Result file of a study, or folder of a run")->required();
+  report->add_option("--out", a.out, "HTML file (default: beside the result file)");
+  report->add_option("--csv", a.csv, "Write trial,case,sample,estimator,metric,value");
+  report->add_flag("--quiet", a.quiet, "Print nothing");
+  report->add_flag("--json", a.json, "Print all statistics as JSON instead of the table");
+  return report;
 }
 
 CLI::App* AddEvaluate(CLI::App& app, EvaluateArguments& a) {
@@ -160,6 +171,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   app.require_subcommand(0, 1);
   const CLI::App* run = AddRun(app, parsed.run);
   const CLI::App* replay = AddReplay(app, parsed.replay);
+  const CLI::App* report = AddReport(app, parsed.report);
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
   const CLI::App* sky = AddSky(app, parsed.sky);
   const CLI::App* compass = AddCompass(app, parsed.compass);
@@ -182,6 +194,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
     parsed.replay.command_line = Joined(arguments);
     return ReplayDataset(parsed.replay, console);
   }
+  if (report->parsed()) return Report(parsed.report, console);
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
   if (sky->parsed()) return Sky(parsed.sky, console);
   if (compass->parsed()) return CompassReadings(parsed.compass, console);
