@@ -107,9 +107,9 @@ TEST(Sensitivity, FindsALineByRankAndAParabolaByVarianceOnly) {
 }
 
 TEST(Stopping, LooksSeldomAndIgnoresWhatRanAhead) {
-  EXPECT_EQ(NextLook(0), 50U);
-  EXPECT_EQ(NextLook(50), 63U);
-  EXPECT_EQ(NextLook(70), 79U);
+  EXPECT_EQ(NextLook(0), 100U);
+  EXPECT_EQ(NextLook(100), 125U);
+  EXPECT_EQ(NextLook(130), 157U);
   std::vector<double> values = Ramp(1000);
   for (double& v : values) v = std::fmod(v * 0.618033988749895, 1.0);
   const auto stop = StopsAt(values, {.half_width = 0.05}, 1);

@@ -69,7 +69,8 @@ Estimated PercentileWithInterval(std::span<const double> sorted, double percent)
 }
 
 double CdfBand(std::size_t n) {
-  return std::sqrt(std::log(2.0 / (1.0 - kConfidence)) / (2.0 * static_cast<double>(n)));
+  const double root = std::sqrt(static_cast<double>(n));
+  return std::sqrt(0.5 * std::log(2.0 / (1.0 - kConfidence))) / (root + 0.12 + 0.11 / root);
 }
 
 std::vector<CdfPoint> ThinnedCdf(std::span<const double> sorted, std::size_t points) {

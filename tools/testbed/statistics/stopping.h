@@ -1,6 +1,6 @@
 // After how many trials is a mean known well enough?
 //
-// Trials are looked at in the order of their numbers, at 50 and then at a quarter more each time,
+// Trials are looked at in the order of their numbers, at 100 and then at a quarter more each time,
 // never in between; the study ends at the first look where the mean's 95 % interval is narrower
 // than asked by the factor 1 + 4 / n. A rule that stops wherever the interval happens to be narrow
 // stops when the scatter is underestimated [Chow1965], and covers as little as 85 % with skewed
@@ -16,7 +16,7 @@
 
 namespace polnav::testbed {
 
-inline constexpr std::size_t kFirstLook = 50;
+inline constexpr std::size_t kFirstLook = 100;
 
 struct StoppingRule {
   double half_width = 0.0;
