@@ -182,7 +182,10 @@ Estimated SpreadWithInterval(std::span<const double> sorted) {
   if (std == 0.0) return {0.0, {0.0, 0.0}};
   const double centre = TrimmedMean(sorted);
   double fourth = 0.0;
-  for (const double v : sorted) fourth += std::pow(v - centre, 4);
+  for (const double v : sorted) {
+    const double d2 = (v - centre) * (v - centre);
+    fourth += d2 * d2;
+  }
   const double kurtosis = fourth / m.n / std::pow(m.sigma, 4);
   const double z = NormalQuantile();
   const double c = m.n / (m.n - z);

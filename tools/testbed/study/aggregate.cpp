@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <map>
 #include <string_view>
 
@@ -80,6 +82,17 @@ Json CaseJson(const TableCase& c) {
           {"paired", Json::array()}};
 }
 
+// Null when no trial yielded the metric.
+Json StatisticsOf(const std::string& metric, const MetricColumn& column, std::uint64_t seed) {
+  const std::vector<double> values = column.Present();
+  if (values.empty()) return nullptr;
+  Json json = {{"metric", MetricJson(values, seed)}};
+  if (const double dof = DegreesOfFreedom(metric); dof > 0.0) {
+    json["consistency"] = ToJson(CheckConsistency(values, dof, seed));
+  }
+  return json;
+}
+
 void AddMetrics(const StudyTable& table, const std::string& estimator, Json& cases) {
   const std::vector<std::string>& metrics = table.metrics();
   for (std::size_t first = 0; first < metrics.size(); first += kBatch) {
@@ -91,12 +104,18 @@ void AddMetrics(const StudyTable& table, const std::string& estimator, Json& cas
       if (read[c].trials.empty()) continue;
       Json& of = estimator.empty() ? cases[c]["run"] : cases[c]["estimators"][estimator];
       of["trials"] = read[c].trials.size();
+      // Each metric by itself, so that threads change nothing.
+      std::vector<std::future<Json>> parts;
       for (std::size_t m = 0; m < batch.size(); ++m) {
-        const std::vector<double> values = read[c].columns[m].Present();
-        if (values.empty()) continue;
-        of["metrics"][batch[m]] = MetricJson(values, table.seed());
-        if (const double dof = DegreesOfFreedom(batch[m]); dof > 0.0) {
-          of["consistency"][batch[m]] = ToJson(CheckConsistency(values, dof, table.seed()));
+        parts.push_back(std::async(std::launch::async, StatisticsOf, std::cref(batch[m]),
+                                   std::cref(read[c].columns[m]), table.seed()));
+      }
+      for (std::size_t m = 0; m < batch.size(); ++m) {
+        Json part = parts[m].get();
+        if (part.is_null()) continue;
+        of["metrics"][batch[m]] = std::move(part["metric"]);
+        if (part.contains("consistency")) {
+          of["consistency"][batch[m]] = std::move(part["consistency"]);
         }
       }
     }
