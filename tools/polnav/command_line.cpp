@@ -28,6 +28,7 @@ struct Parsed {
   ReplayArguments replay;
   StudyArguments study;
   MergeArguments merge;
+  ReportArguments report;
   EvaluateArguments evaluate;
   SkyArguments sky;
   CompassArguments compass;
@@ -101,6 +102,16 @@ CLI::App* AddMerge(CLI::App& app, MergeArguments& a) {
   merge->add_option("IN", a.inputs, "Result files of the shards")->required();
   merge->add_flag("--quiet", a.quiet, "Print nothing but failures");
   return merge;
+}
+
+CLI::App* AddReport(CLI::App& app, ReportArguments& a) {
+  CLI::App* report = app.add_subcommand("report", "Statistics and HTML report of a study");
+  report->add_option("PATH", a.path, "Result file of a study, or folder of a run")->required();
+  report->add_option("--out", a.out, "HTML file (default: beside the result file)");
+  report->add_option("--csv", a.csv, "Write trial,case,sample,estimator,metric,value");
+  report->add_flag("--quiet", a.quiet, "Print nothing");
+  report->add_flag("--json", a.json, "Print all statistics as JSON instead of the table");
+  return report;
 }
 
 CLI::App* AddEvaluate(CLI::App& app, EvaluateArguments& a) {
@@ -187,6 +198,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   const CLI::App* replay = AddReplay(app, parsed.replay);
   const CLI::App* study = AddStudy(app, parsed.study);
   const CLI::App* merge = AddMerge(app, parsed.merge);
+  const CLI::App* report = AddReport(app, parsed.report);
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
   const CLI::App* sky = AddSky(app, parsed.sky);
   const CLI::App* compass = AddCompass(app, parsed.compass);
@@ -211,6 +223,7 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   }
   if (study->parsed()) return Study(parsed.study, console, closed_loop);
   if (merge->parsed()) return Merge(parsed.merge, console);
+  if (report->parsed()) return Report(parsed.report, console);
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
   if (sky->parsed()) return Sky(parsed.sky, console);
   if (compass->parsed()) return CompassReadings(parsed.compass, console);

@@ -56,6 +56,14 @@ struct MergeArguments {
   bool quiet = false;
 };
 
+struct ReportArguments {
+  std::string path;  // result file of a study, or folder of a run
+  std::string out;   // HTML; empty: beside the result file
+  std::string csv;   // empty: none
+  bool quiet = false;
+  bool json = false;
+};
+
 struct EvaluateArguments {
   std::string truth;
   std::string estimate;
@@ -127,6 +135,9 @@ struct CompassArguments {
 
 // Headings of raw polarization images, or a calibration from a turn of them.
 [[nodiscard]] int CompassReadings(const CompassArguments& arguments, const Console& console);
+
+// HTML, JUnit, table and verdict of a study; where those of a run are.
+[[nodiscard]] int Report(const ReportArguments& arguments, const Console& console);
 
 // Scenarios, estimators, metrics.
 [[nodiscard]] int List(const Console& console);

@@ -10,9 +10,7 @@
 #include "tools/testbed/report/sections.h"
 
 namespace polnav::testbed {
-namespace {
 
-// JSON inside a script must not be able to end it.
 std::string ScriptSafe(const Json& data) {
   std::string text;
   for (const char c : data.dump()) {
@@ -24,8 +22,6 @@ std::string ScriptSafe(const Json& data) {
   }
   return text;
 }
-
-}  // namespace
 
 std::string VersionText() {
   return fmt::format("Polnav {} (GCC {}, Eigen {}.{}.{}, OpenCV {})", POLNAV_VERSION, __VERSION__,

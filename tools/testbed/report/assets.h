@@ -8,5 +8,6 @@ namespace polnav::testbed {
 [[nodiscard]] std::string_view ChartJs();
 [[nodiscard]] std::string_view ReportCss();
 [[nodiscard]] std::string_view ReportJs();
+[[nodiscard]] std::string_view StudyJs();  // of a study's report
 
 }  // namespace polnav::testbed

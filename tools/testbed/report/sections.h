@@ -37,4 +37,7 @@ struct HtmlTable {
   [[nodiscard]] std::string Html() const;
 };
 
+// JSON for inside a script, which it must not be able to end.
+[[nodiscard]] std::string ScriptSafe(const Json& data);
+
 }  // namespace polnav::testbed

@@ -1,0 +1,193 @@
+// The tables of a study's report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "tools/testbed/input_error.h"
+#include "tools/testbed/paper_tables.h"
+#include "tools/testbed/report/sections.h"
+#include "tools/testbed/report/study_report.h"
+#include "tools/testbed/study/aggregate.h"
+
+namespace polnav::testbed {
+namespace {
+
+std::string Figure(const std::string& value, const std::string& label) {
+  return "<div class=\"figure\"><b>" + EscapeMarkup(value) + "</b><span>" + EscapeMarkup(label) +
+         "</span></div>";
+}
+
+std::string Section(const std::string& title, const HtmlTable& table, const std::string& note) {
+  if (table.rows.size() < 2) return "";
+  return "<section><h2>" + title + "</h2>" + table.Html() + "<p class=\"soft small\">" + note +
+         "</p></section>";
+}
+
+// Beside the study file as it was typed, if it is still there.
+std::optional<Scenario> ScenarioOf(const StudyTable& table, const TableCase& c) {
+  try {
+    const std::filesystem::path study = table.Meta("study_file");
+    return LoadScenario(study.parent_path() / c.scenario_file);
+  } catch (const std::exception&) {
+    return std::nullopt;  // the report does without the paper
+  }
+}
+
+void AddPaper(const PaperTable& paper, HtmlTable& table) {
+  for (const PaperRow& row : paper.rows) {
+    const auto text = [](std::optional<double> v) {
+      return v ? fmt::format("{:g}", *v) : std::string("–");
+    };
+    table.rows.push_back({std::string(paper.paper) + ": " + std::string(row.label), "1",
+                          text(row.rmse), "", "", "", text(row.max)});
+    table.row_class.resize(table.rows.size() - 2);
+    table.row_class.emplace_back("paper");
+  }
+}
+
+std::string ErrorTable(const Json& estimators, const std::string& metric, const PaperTable& paper) {
+  HtmlTable table{.rows = {{metric, "trials", "mean", "median", "std", "95th percentile", "max"}}};
+  for (const auto& [name, of] : estimators.items()) {
+    if (!of.contains("metrics") || !of["metrics"].contains(metric)) continue;
+    const Json& m = of["metrics"][metric];
+    table.rows.push_back(
+        {name, m["n"].dump(), IntervalText(m["mean"]), IntervalText(m["median"]),
+         IntervalText(m["std"]), IntervalText(m["p95"]),
+         m["max"].is_null() ? "–" : fmt::format("{:.4g}", m["max"].get<double>())});
+  }
+  if (table.rows.size() < 2) return "";
+  AddPaper(paper, table);
+  return table.Html();
+}
+
+PaperTable PaperOf(const std::optional<Scenario>& scenario, const std::string& metric) {
+  if (!scenario) return {};
+  if (metric == "heading_deg.rmse") return PaperHeadings(*scenario);
+  if (metric == "position_m.rmse") return PaperPositions(*scenario);
+  return {};
+}
+
+std::string PText(const Json& p) {
+  const auto value = p.get<double>();
+  return value < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", value);
+}
+
+}  // namespace
+
+std::string StudyHeader(const StudyTable& table, const Json& aggregate) {
+  std::string verdict;
+  if (!aggregate["criteria"].empty()) {
+    const bool holds = std::all_of(aggregate["criteria"].begin(), aggregate["criteria"].end(),
+                                   [](const Json& c) { return c["passed"].get<bool>(); });
+    verdict =
+        fmt::format("<div style=\"flex:0 0 auto\" class=\"verdict {}\">{}</div>",
+                    holds ? "pass" : "fail", holds ? "all criteria hold" : "a criterion failed");
+  }
+  std::uint64_t ok = 0;
+  for (const TableCase& c : table.cases()) ok += c.Ok();
+  const auto finished = aggregate["trials"].get<std::uint64_t>();
+  return "<header><div><h1>" + EscapeMarkup(table.Meta("name")) + "</h1><p class=\"soft\">" +
+         EscapeMarkup(table.Meta("description")) + "</p></div>" + verdict +
+         "</header><div class=\"figures\">" +
+         Figure(std::to_string(finished),
+                aggregate["complete"].get<bool>() ? "trials" : "trials so far") +
+         Figure(std::to_string(finished - ok), "did not go ok") +
+         Figure(std::to_string(table.cases().size()), "cases") +
+         Figure(table.Meta("level"), "level") + Figure(table.Meta("seed"), "seed") +
+         "</div><p class=\"soft small\">In brackets: 95 % intervals. " +
+         EscapeMarkup(table.Meta("polnav_version")) + ", identity <code>" +
+         EscapeMarkup(table.Meta("identity").substr(0, 16)) + "</code></p>";
+}
+
+std::string StudyCriteriaSection(const Json& aggregate) {
+  HtmlTable table{.rows = {{"criterion", "case", "expected", "measured", "values", ""}},
+                  .text_columns = true};
+  for (const Json& c : aggregate["criteria"]) {
+    const bool passed = c["passed"].get<bool>();
+    table.rows.push_back({c["name"].get<std::string>(), c["case"].get<std::string>(),
+                          c["expected"].get<std::string>(), IntervalText(c["actual"]),
+                          c["n"].dump(), passed ? "holds" : "fails"});
+    table.row_class.emplace_back(passed ? "pass" : "fail");
+  }
+  return Section("Criteria", table, "");
+}
+
+std::string StudyErrorSections(const StudyTable& table, const Json& aggregate) {
+  std::string html;
+  for (std::size_t c = 0; c < table.cases().size(); ++c) {
+    const Json& of = aggregate["cases"][c];
+    const std::optional<Scenario> scenario = ScenarioOf(table, table.cases()[c]);
+    std::string tables;
+    for (const std::string& metric : HeadlineMetrics(table)) {
+      tables += ErrorTable(of["estimators"], metric, PaperOf(scenario, metric));
+    }
+    html += "<section><h2>" + EscapeMarkup(table.cases()[c].label) + "</h2>" + tables +
+            "<p class=\"soft small\">Went ok: " + IntervalText(of["ok_rate"], 100.0) + " % of " +
+            std::to_string(table.cases()[c].Finished()) +
+            " trials. A paper's figures are of one drive.</p></section>";
+  }
+  return html;
+}
+
+std::string StudyPairSection(const Json& aggregate) {
+  HtmlTable table{.rows = {{"case", "metric", "a", "b", "a lower in", "mean a - b",
+                            "a lower by [%]", "sign test p", "Wilcoxon p"}}};
+  for (const Json& c : aggregate["cases"]) {
+    for (const Json& p : c["paired"]) {
+      table.rows.push_back(
+          {c["label"].get<std::string>(), p["metric"].get<std::string>(), p["a"].get<std::string>(),
+           p["b"].get<std::string>(), p["lower"].dump() + " of " + p["pairs"].dump(),
+           IntervalText(p["mean_difference"]), IntervalText(p["improvement"], 100.0),
+           PText(p["sign_test"]), PText(p["wilcoxon"])});
+    }
+  }
+  return Section("Compared on the same trials", table,
+                 "Differences within each trial: both estimators had the same streams.");
+}
+
+std::string StudyConsistencySection(const Json& aggregate) {
+  HtmlTable table{.rows = {{"case", "estimator", "", "honest", "mean over trials",
+                            "chi-square bounds", "verdict"}}};
+  for (const Json& c : aggregate["cases"]) {
+    for (const auto& [name, of] : c["estimators"].items()) {
+      if (!of.contains("consistency")) continue;
+      for (const auto& [metric, e] : of["consistency"].items()) {
+        table.rows.push_back({c["label"].get<std::string>(), name, metric, e["honest"].dump(),
+                              IntervalText(e["mean"]),
+                              fmt::format("{:.4g} to {:.4g}", e["bounds"]["lower"].get<double>(),
+                                          e["bounds"]["upper"].get<double>()),
+                              e["verdict"].get<std::string>()});
+      }
+    }
+  }
+  return Section("Consistency", table,
+                 "Squared error (or innovation) over what the covariance says. Overconfident: "
+                 "larger than believed.");
+}
+
+std::string StudySensitivitySection(const Json& aggregate) {
+  HtmlTable table{.rows = {{"case", "estimator", "metric", "input", "rank correlation",
+                            "share of the variance"}}};
+  for (const Json& c : aggregate["cases"]) {
+    for (const auto& [name, of] : c["estimators"].items()) {
+      if (!of.contains("sensitivity")) continue;
+      for (const auto& [metric, inputs] : of["sensitivity"].items()) {
+        for (const auto& [key, s] : inputs.items()) {
+          const Json& index = s["first_order"];
+          table.rows.push_back(
+              {c["label"].get<std::string>(), name, metric, key,
+               IntervalText(s["rank_correlation"]),
+               index.is_null() ? "–" : fmt::format("{:.3f}", index.get<double>())});
+        }
+      }
+    }
+  }
+  const std::string section = Section(
+      "Sensitivity to the dispersed inputs", table,
+      "Spearman's rank correlation; share of the metric's variance that the input alone explains.");
+  return section;
+}
+
+}  // namespace polnav::testbed
