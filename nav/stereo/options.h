@@ -47,7 +47,7 @@ struct TrackerOptions {
   // A track is held against the picture where it began until its depth has changed by this ratio
   // or it lies further than this from where the last picture says; then it begins anew.
   double reference_scale = 1.25;
-  double reference_px = 1.0;
+  double reference_px = 3.0;
   double forward_backward_px = 0.6;  // a track must come back to where it was
   double epipolar_px = 1.2;          // rows of left and right may differ by, where no pictures are
   double stereo_correlation = 0.8;   // of the two patches of a stereo match; higher: fewer, surer

@@ -25,6 +25,7 @@ struct FollowedPoint {
   std::optional<std::uint64_t> reference;  // its number
   cv::Point2f reference_raw;               // where the point is there
   std::optional<float> reference_disparity;
+  cv::Matx22f stretch = cv::Matx22f::eye();  // of its surroundings, since then
 };
 
 class References {
@@ -44,7 +45,7 @@ class References {
 
   TrackerOptions options_;
   std::uint64_t frame_ = 0;
-  std::map<std::uint64_t, Pyramid> pictures_;  // full size and its slopes, by number
+  std::map<std::uint64_t, cv::Mat> pictures_;  // full size, by number
 };
 
 }  // namespace polnav::nav
