@@ -10,7 +10,6 @@ namespace {
 
 // Over which the slopes are gathered, at the size they are taken from: as wide as the patch.
 constexpr int kHalf = 2;
-const cv::TermCriteria kCentred(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.05);
 
 struct Corner {
   float strength;
@@ -151,10 +150,6 @@ std::vector<cv::Point2f> FindCorners(const Pyramid& pyramid,
   SortByStrength(found);
   if (static_cast<int>(found.size()) > room) found.resize(static_cast<std::size_t>(room));
   for (const Corner& corner : found) fresh.push_back(cv::Point2f(corner.at) * scale);
-  if (!fresh.empty()) {
-    cv::cornerSubPix(pyramid[0], fresh, {options.window_px / 2, options.window_px / 2}, {-1, -1},
-                     kCentred);
-  }
   return fresh;
 }
 
