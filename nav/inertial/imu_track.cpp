@@ -39,12 +39,13 @@ std::optional<InertialPrediction> ImuTrack::Predict(const Keyframe& keyframe,
 }
 
 void ImuTrack::Connect(const Motion& before, const Matrix15d& covariance, Keyframe& keyframe) {
-  const auto sigma = [&](Eigen::Index at) {
-    return std::sqrt(covariance.diagonal().segment<2>(at).maxCoeff());
+  const auto sigma = [&](Eigen::Index at, Eigen::Index axes = 3) {
+    return std::sqrt(covariance.diagonal().segment(at, axes).maxCoeff());
   };
   if (complete_) {
     keyframe.inertial = MakeInertialEdge(sum_, WalkSinceKeyframe(), T_BI_);
-    keyframe.inertial->settled = sigma(3) < kSettledTilt_rad && sigma(6) < kSettledSpeed_m_s;
+    // Tilt is about the two level axes; heading is another matter.
+    keyframe.inertial->settled = sigma(3, 2) < kSettledTilt_rad && sigma(6) < kSettledSpeed_m_s;
     return;
   }
   const Motion unmoved{

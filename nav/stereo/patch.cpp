@@ -34,12 +34,11 @@ bool ReadPatch(const cv::Mat& image, const cv::Point2f& center, int half, Patch&
   return true;
 }
 
-bool ReadSheared(const cv::Mat& image, const cv::Point2f& center, const cv::Point2f& along,
-                 float by_x, float by_y, int half, Patch& patch) {
+bool ReadWarped(const cv::Mat& image, const cv::Point2f& center, const cv::Matx22f& stretch,
+                int half, Patch& patch) {
   const float reach = static_cast<float>(half);
-  const float shear = (std::abs(by_x) + std::abs(by_y)) * reach;
-  const float wide = reach + shear * std::abs(along.x) + 1.0F;
-  const float high = reach + shear * std::abs(along.y) + 1.0F;
+  const float wide = reach * (std::abs(stretch(0, 0)) + std::abs(stretch(0, 1))) + 1.0F;
+  const float high = reach * (std::abs(stretch(1, 0)) + std::abs(stretch(1, 1))) + 1.0F;
   const bool inside = center.x >= wide && center.y >= high &&
                       center.x + wide < static_cast<float>(image.cols - 1) &&
                       center.y + high < static_cast<float>(image.rows - 1);
@@ -48,10 +47,11 @@ bool ReadSheared(const cv::Mat& image, const cv::Point2f& center, const cv::Poin
   patch.resize(static_cast<std::size_t>(side * side));
   float* out = patch.data();
   for (int j = -half; j <= half; ++j) {
+    const cv::Point2f from(center.x + stretch(0, 1) * static_cast<float>(j),
+                           center.y + stretch(1, 1) * static_cast<float>(j));
     for (int i = -half; i <= half; ++i) {
-      const float shift = by_x * static_cast<float>(i) + by_y * static_cast<float>(j);
-      const float x = center.x + static_cast<float>(i) + along.x * shift;
-      const float y = center.y + static_cast<float>(j) + along.y * shift;
+      const float x = from.x + stretch(0, 0) * static_cast<float>(i);
+      const float y = from.y + stretch(1, 0) * static_cast<float>(i);
       // Inside the image, and so not negative: the cast is the floor.
       const int column = static_cast<int>(x);
       const int row = static_cast<int>(y);

@@ -15,10 +15,9 @@ using Patch = std::vector<float>;
 [[nodiscard]] bool ReadPatch(const cv::Mat& image, const cv::Point2f& center, int half,
                              Patch& patch);
 
-// The same where the column i and the row j lie at center + (i, j) + along (by_x i + by_y j).
-[[nodiscard]] bool ReadSheared(const cv::Mat& image, const cv::Point2f& center,
-                               const cv::Point2f& along, float by_x, float by_y, int half,
-                               Patch& patch);
+// The same where the column i and the row j lie at center + stretch (i, j).
+[[nodiscard]] bool ReadWarped(const cv::Mat& image, const cv::Point2f& center,
+                              const cv::Matx22f& stretch, int half, Patch& patch);
 
 // Correlation from -1 to 1 after mean and contrast are taken out; 0 where there is no contrast.
 [[nodiscard]] float Correlation(const Patch& a, const Patch& b);

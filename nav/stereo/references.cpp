@@ -2,35 +2,30 @@
 
 #include <set>
 
+#include "nav/stereo/patch_align.h"
+
 namespace polnav::nav {
 namespace {
 
 // Pictures kept, 1.5 MB each at VGA; driving needs about thirty.
 constexpr std::size_t kMaxReferences = 48;
+constexpr double kLeastCorrelation = 0.8;
 
 }  // namespace
 
 void References::Hold(const Pyramid& pyramid, std::vector<FollowedPoint>& tracks) const {
-  std::map<std::uint64_t, std::vector<FollowedPoint*>> by_reference;
-  for (FollowedPoint& t : tracks) {
-    if (t.reference) by_reference[*t.reference].push_back(&t);
-  }
   const auto limit = static_cast<float>(options_.reference_px);
-  for (const auto& [reference, held] : by_reference) {
-    std::vector<cv::Point2f> from;
-    std::vector<cv::Point2f> to;
-    for (const FollowedPoint* t : held) {
-      from.push_back(t->reference_raw);
-      to.push_back(t->raw);
-    }
-    const std::vector<bool> ok = FollowNear(pictures_.at(reference), pyramid, from, to, options_);
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      const cv::Point2f d = to[i] - held[i]->raw;
-      if (ok[i] && d.dot(d) < limit * limit) {
-        held[i]->raw = to[i];
-      } else {
-        held[i]->reference.reset();
-      }
+  PatchAligner aligner(options_.window_px / 2, kLeastCorrelation);
+  for (FollowedPoint& t : tracks) {
+    if (!t.reference) continue;
+    const auto place =
+        aligner.Align(pictures_.at(*t.reference), t.reference_raw, pyramid[0], {t.raw, t.stretch});
+    const cv::Point2f d = place ? place->at - t.raw : cv::Point2f();
+    if (place && d.dot(d) < limit * limit) {
+      t.raw = place->at;
+      t.stretch = place->stretch;
+    } else {
+      t.reference.reset();
     }
   }
 }
@@ -45,11 +40,12 @@ bool References::LooksOtherwise(const FollowedPoint& track) const {
 
 void References::Renew(const Pyramid& pyramid, std::vector<FollowedPoint>& tracks) {
   ++frame_;
-  pictures_[frame_] = {pyramid[0], pyramid[1]};
+  pictures_[frame_] = pyramid[0];
   const auto renew = [this](FollowedPoint& t) {
     t.reference = frame_;
     t.reference_raw = t.raw;
     t.reference_disparity = t.disparity;
+    t.stretch = cv::Matx22f::eye();
   };
   std::set<std::uint64_t> needed;
   for (FollowedPoint& t : tracks) {

@@ -1,8 +1,9 @@
 // Is a track still where it began?
 //
 // A track that is followed from frame to frame wanders off its point a little each time. Held
-// against the picture where it began it does not, as long as the point still looks the same: until
-// it has come much nearer, or something else is in its place.
+// against the picture where it began, shifted and stretched (patch_align.h), it does not, as long
+// as the point still looks the same: until it has come much nearer, or something else is in its
+// place.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +26,7 @@ struct FollowedPoint {
   std::optional<std::uint64_t> reference;  // its number
   cv::Point2f reference_raw;               // where the point is there
   std::optional<float> reference_disparity;
+  cv::Matx22f stretch = cv::Matx22f::eye();  // of its surroundings, since then
 };
 
 class References {
@@ -44,7 +46,7 @@ class References {
 
   TrackerOptions options_;
   std::uint64_t frame_ = 0;
-  std::map<std::uint64_t, Pyramid> pictures_;  // full size and its slopes, by number
+  std::map<std::uint64_t, cv::Mat> pictures_;  // full size, by number
 };
 
 }  // namespace polnav::nav

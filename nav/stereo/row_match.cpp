@@ -121,7 +121,9 @@ std::optional<float> RowMatcher::Refine(const RowQuery& query, float disparity_p
   Vector5f x(disparity_px, 0.0F, 0.0F, 1.0F, 0.0F);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const cv::Point2f at = start.at + (x(0) - disparity_px) * start.along;
-    if (!ReadSheared(right_[0], at, start.along, x(1), x(2), half_, candidate_)) {
+    const cv::Matx22f stretch(1.0F + start.along.x * x(1), start.along.x * x(2),
+                              start.along.y * x(1), 1.0F + start.along.y * x(2));
+    if (!ReadWarped(right_[0], at, stretch, half_, candidate_)) {
       return std::nullopt;
     }
     Vector5f g(0.0F, ridge * x(1), ridge * x(2), 0.0F, 0.0F);

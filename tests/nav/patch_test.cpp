@@ -15,7 +15,7 @@ TEST(Patch, ReadsBetweenThePixels) {
   Patch plain;
   Patch sheared;
   ASSERT_TRUE(ReadPatch(image, {20.25F, 15.5F}, 2, plain));
-  ASSERT_TRUE(ReadSheared(image, {20.25F, 15.5F}, {-1.0F, 0.0F}, 0.1F, 0.2F, 2, sheared));
+  ASSERT_TRUE(ReadWarped(image, {20.25F, 15.5F}, {0.9F, -0.2F, 0.0F, 1.0F}, 2, sheared));
   std::size_t k = 0;
   for (int j = -2; j <= 2; ++j) {
     for (int i = -2; i <= 2; ++i, ++k) {
@@ -31,7 +31,7 @@ TEST(Patch, HasToLieInside) {
   EXPECT_TRUE(ReadPatch(image, {5.0F, 5.0F}, 5, patch));
   EXPECT_FALSE(ReadPatch(image, {4.9F, 5.0F}, 5, patch));
   EXPECT_FALSE(ReadPatch(image, {44.5F, 5.0F}, 5, patch));
-  EXPECT_FALSE(ReadSheared(image, {-3.0F, 5.0F}, {-1.0F, 0.0F}, 0.0F, 0.0F, 5, patch));
+  EXPECT_FALSE(ReadWarped(image, {-3.0F, 5.0F}, cv::Matx22f::eye(), 5, patch));
 }
 
 TEST(Patch, CorrelationDoesNotMindGainAndOffset) {
