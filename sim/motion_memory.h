@@ -1,11 +1,11 @@
 // Which trials move alike, so that the motion need be computed only once?
 //
 // Those whose world and vehicle are the same in every option and drawn from a seed of their own
-// (world.seed). The newest motion is kept; what comes out is the same with and without it.
+// (world.seed). A few motions are kept; what comes out is the same with and without them.
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "sim/simulator.h"
 
@@ -26,8 +26,11 @@ class MotionMemory {
     nav::TimeNs duration;
     bool operator==(const Key&) const = default;
   };
-  std::optional<Key> key_;
-  std::shared_ptr<const Motion> motion_;
+  struct Known {
+    Key key;
+    std::shared_ptr<const Motion> motion;
+  };
+  std::vector<Known> known_;  // the oldest first
 };
 
 }  // namespace polnav::sim

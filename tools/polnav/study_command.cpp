@@ -74,10 +74,15 @@ int RunAll(const StudyArguments& arguments, const StudyPlan& plan, const Shard& 
     return 128 + result.signal;
   }
   if (!arguments.quiet) Summarize(result, out, console);
+  // A part of a study is judged with the others, when they are joined.
+  const int verdict = shard.count > 1
+                          ? kExitHolds
+                          : Report({.path = out.string(), .quiet = arguments.quiet}, console);
   std::uint64_t failed = 0;
-  for (const auto& [outcome, count] : result.outcomes)
+  for (const auto& [outcome, count] : result.outcomes) {
     failed += outcome == Outcome::kOk ? 0 : count;
-  if (failed == 0 || ToleratesFailures(plan.options())) return kExitHolds;
+  }
+  if (failed == 0 || ToleratesFailures(plan.options())) return verdict;
   console.err << fmt::format("polnav: {} trials did not go ok: {}\n", failed,
                              OutcomeTable(result.outcomes));
   return kExitCriterionFailed;

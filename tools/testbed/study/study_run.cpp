@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 
 #include "tools/testbed/study/file_lock.h"
@@ -45,7 +46,11 @@ WorkerLimits LimitsOf(const StudyPlan& plan) {
 }
 
 TrialFunction TrialOf(const StudyPlan& plan, const ClosedLoopFunction& closed_loop) {
-  return [&](std::uint64_t trial) { return RunTrial(plan, trial, closed_loop); };
+  // Each worker process has its own copy, and fills it with what its trials share.
+  auto motions = std::make_shared<sim::MotionMemory>();
+  return [&plan, &closed_loop, motions](std::uint64_t trial) {
+    return RunTrial(plan, trial, closed_loop, motions.get());
+  };
 }
 
 void MakeFolder(const std::filesystem::path& file) {

@@ -115,7 +115,7 @@ std::vector<TrialScore> ScoresOf(const Scenario& scenario, const RunRecord& reco
 }
 
 TrialRecord RunTrial(const StudyPlan& plan, std::uint64_t trial,
-                     const ClosedLoopFunction& closed_loop) {
+                     const ClosedLoopFunction& closed_loop, sim::MotionMemory* motions) {
   const auto begin = std::chrono::steady_clock::now();
   const PlannedTrial planned = plan.At(trial);
   TrialRecord record = EmptyRecord(planned, Outcome::kOk, "");
@@ -130,9 +130,12 @@ TrialRecord RunTrial(const StudyPlan& plan, std::uint64_t trial,
   }
   try {
     if (scenario) {
-      const RunRecord run = closed_loop(
-          *scenario, {.seed = plan.options().seed, .trial = planned.sample, .level = plan.level()},
-          {});
+      const RunRecord run = closed_loop(*scenario,
+                                        {.seed = plan.options().seed,
+                                         .trial = planned.sample,
+                                         .level = plan.level(),
+                                         .motions = motions},
+                                        {});
       const SeriesOptions& series = plan.options().series;
       const bool keep = planned.sample < static_cast<std::uint64_t>(series.samples);
       record.scores = ScoresOf(*scenario, run, plan.options().seed, keep ? series.points : 0);

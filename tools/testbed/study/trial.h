@@ -21,7 +21,8 @@ using ClosedLoopFunction = std::function<RunRecord(const Scenario&, const RunOpt
                                       const std::string& detail);
 
 [[nodiscard]] TrialRecord RunTrial(const StudyPlan& plan, std::uint64_t trial,
-                                   const ClosedLoopFunction& closed_loop);
+                                   const ClosedLoopFunction& closed_loop,
+                                   sim::MotionMemory* motions = nullptr);
 
 // The scores of a run: metrics of result.json by estimator, hashes, errors over time (points: 0
 // for none).
