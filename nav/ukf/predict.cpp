@@ -1,0 +1,175 @@
+#include "nav/ukf/predict.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "nav/inertial/options.h"
+#include "nav/ukf/sigma_points.h"
+
+namespace polnav::nav::ukf {
+namespace {
+
+constexpr double kFlicker_s = 30.0;
+constexpr double kTurn_s = 2.0;   // of a turn: crooked axes make it a tilt meanwhile
+constexpr double kShake_s = 0.05;  // of a step's shock
+constexpr int kCurved = 6;        // attitude and rate
+constexpr Eigen::Index kMoved = 9;  // theta, u, p: what an interval changes by more than a factor
+
+using Moved = Eigen::Matrix<double, kMoved, 1>;
+
+const Eigen::Vector3d kGravity_W(0.0, 0.0, -kGravity_m_s2);
+
+double Square(double x) { return x * x; }
+
+struct Interval {
+  Eigen::Vector3d rate;      // without bias
+  Eigen::Vector3d force;     // likewise
+  double gyro_z = 0.0;       // as read
+  double h = 0.0;
+  Eigen::Quaterniond q;      // before
+  Eigen::Vector3d v;
+  Eigen::Quaterniond q_next;  // after
+  Eigen::Vector3d v_next;
+};
+
+// Where a sigma point goes, relative to where the nominal state goes.
+Moved Carry(const Interval& i, const Error& e) {
+  const Eigen::Vector3d rate = i.rate - e.segment<3>(kGyroBias) -
+                               Eigen::Vector3d(0.0, 0.0, e(kGyroScale) * i.gyro_z);
+  const Eigen::Quaterniond half_turn = Exp(0.5 * i.h * rate);
+  const Eigen::Quaterniond start = Exp(e.segment<3>(kTheta));
+  const Eigen::Quaterniond half = start * (i.q * half_turn);
+  const Eigen::Vector3d v = start * (i.v + e.segment<3>(kVelocity));
+  const Eigen::Vector3d v_next =
+      v + i.h * (half * (i.force - e.segment<3>(kAccelBias)) + kGravity_W);
+  const Eigen::Vector3d theta = Log(half * half_turn * i.q_next.conjugate());
+  Moved moved;
+  moved << theta, Exp(-theta) * v_next - i.v_next,
+      e.segment<3>(kPosition) + 0.5 * i.h * (v + v_next - i.v - i.v_next);
+  return moved;
+}
+
+// What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da.
+void CarryRest(const Eigen::Matrix3d& R_half, double h, Covariance& S) {
+  const Eigen::Matrix3d by_accel = h * R_half;
+  const Eigen::Matrix<double, kSize, 3> by = S.middleCols<3>(kAccelBias) * by_accel.transpose();
+  S.middleCols<3>(kPosition) += h * S.middleCols<3>(kVelocity) - 0.5 * h * by;
+  S.middleCols<3>(kVelocity) -= by;
+  for (Eigen::Index j = 0; j < kSize; ++j) {
+    auto column = S.col(j);
+    const Eigen::Vector3d at = by_accel * column.segment<3>(kAccelBias);
+    column.segment<3>(kPosition) += h * column.segment<3>(kVelocity) - 0.5 * h * at;
+    column.segment<3>(kVelocity) -= at;
+  }
+}
+
+void AddNoise(const Interval& i, const Eigen::Vector3d& acceleration, const ProcessNoise& n,
+              Covariance& P) {
+  const double tilt = n.gyro_rad2_s + n.tilt_by_turn2_s * Square(i.rate.z());
+  auto diagonal = P.diagonal();
+  diagonal.segment<2>(kTheta).array() += i.h * tilt;
+  diagonal(kTheta + 2) += i.h * n.gyro_rad2_s;
+  const double accel = n.accel_m2_s3 + n.accel_by_accel2_s * acceleration.squaredNorm();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    P(kVelocity + k, kVelocity + k) += i.h * accel;
+    P(kPosition + k, kPosition + k) += 0.25 * i.h * i.h * i.h * accel;
+    P(kPosition + k, kVelocity + k) += 0.5 * i.h * i.h * accel;
+    P(kVelocity + k, kPosition + k) += 0.5 * i.h * i.h * accel;
+  }
+  diagonal.segment<3>(kGyroBias).array() += i.h * n.gyro_bias_rad2_s3;
+  diagonal.segment<3>(kAccelBias).array() += i.h * n.accel_bias_m2_s5;
+  diagonal(kTerrain) += n.terrain_m2_m * i.h * i.v.head<2>().norm();
+}
+
+// Gauss-Markov of variance 1 [-]: forgets, and keeps its variance.
+void Forget(double keep, Index at, State& state) {
+  state.slow(at - kNavigation) *= keep;
+  state.P.row(at) *= keep;
+  state.P.col(at) *= keep;
+  state.P(at, at) += 1.0 - keep * keep;
+}
+
+// The curved directions: attitude, then rate.
+Columns<kCurved> TakeCurved(double gyro_z, Covariance& P) {
+  Columns<kCurved> columns;
+  for (int k = 0; k < 3; ++k) TakeColumn(kTheta + k, P, columns.col(k));
+  TakeColumn(kGyroBias, P, columns.col(3));
+  TakeColumn(kGyroBias + 1, P, columns.col(4));
+  TakeColumn(kGyroBias + 2, kGyroScale, gyro_z, P, columns.col(5));
+  return columns;
+}
+
+// Adds the curved directions' points to what the others make of P; returns the mean's shift.
+Moved Gather(const Interval& i, const Columns<kCurved>& columns, Covariance& P) {
+  const double spread = std::sqrt(static_cast<double>(kCurved));
+  std::array<Moved, kCurved> even;
+  Moved mean = Moved::Zero();
+  for (int k = 0; k < kCurved; ++k) {
+    Error column = columns.col(k);
+    const Error point = spread * column;
+    const Moved plus = Carry(i, point);
+    const Moved minus = Carry(i, -point);
+    even[k] = 0.5 * (plus + minus);
+    mean += even[k] / kCurved;
+    column.head<kMoved>() = 0.5 / spread * (plus - minus);
+    P.noalias() += column * column.transpose();
+  }
+  for (const Moved& e : even) {
+    const Moved off = (e - mean) / spread;
+    P.topLeftCorner<kMoved, kMoved>().noalias() += off * off.transpose();
+  }
+  return mean;
+}
+
+}  // namespace
+
+ProcessNoise NoiseOf(const ImuCalibration& imu, const UkfOptions& options, double sky_time_s) {
+  const double crooked = options.misalignment_sigma_deg * std::numbers::pi / 180.0;
+  return {.gyro_rad2_s = Square(imu.gyro_noise_rad_s_sqrt_hz),
+          .accel_m2_s3 = Square(imu.accel_noise_m_s2_sqrt_hz),
+          .gyro_bias_rad2_s3 = Square(imu.gyro_bias_walk_rad_s_sqrt_s) +
+                               Square(imu.gyro_bias_instability_rad_s) / kFlicker_s,
+          .accel_bias_m2_s5 = Square(imu.accel_bias_walk_m_s2_sqrt_s) +
+                              Square(imu.accel_bias_instability_m_s2) / kFlicker_s,
+          .tilt_by_turn2_s = Square(crooked) * kTurn_s,
+          .accel_by_accel2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kShake_s,
+          .terrain_m2_m = Square(options.terrain_sigma_m_sqrt_m),
+          .sky_time_s = std::max(sky_time_s, 1e-3)};
+}
+
+void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2, double h_s,
+             TimeNs stamp, const ProcessNoise& noise, State& state) {
+  Interval i{.force = accel_m_s2 - state.accel_bias,
+             .gyro_z = gyro_rad_s.z(),
+             .h = h_s,
+             .q = state.q_WI,
+             .v = state.v_WI};
+  i.rate = gyro_rad_s - state.gyro_bias -
+           Eigen::Vector3d(0.0, 0.0, state.Slow(kGyroScale) * gyro_rad_s.z());
+  const Eigen::Quaterniond half_turn = Exp(0.5 * h_s * i.rate);
+  const Eigen::Quaterniond half = i.q * half_turn;
+  const Eigen::Vector3d acceleration = half * i.force + kGravity_W;
+  i.q_next = half * half_turn;
+  i.v_next = i.v + h_s * acceleration;
+
+  const Columns<kCurved> columns = TakeCurved(i.gyro_z, state.P);
+  CarryRest(half.toRotationMatrix(), h_s, state.P);
+  Error shift = Error::Zero();
+  shift.head<kMoved>() = Gather(i, columns, state.P);
+  AddNoise(i, acceleration, noise, state.P);
+
+  state.stamp = stamp;
+  state.q_WI = i.q_next;
+  state.p_WI += 0.5 * h_s * (i.v + i.v_next);
+  state.v_WI = i.v_next;
+  state.turned_rad += h_s * gyro_rad_s;
+  state.gained_m += h_s * (state.gained_m_s + 0.5 * h_s * acceleration);
+  state.gained_m_s += h_s * acceleration;
+  Move(shift, state);
+  const double keep = std::exp(-h_s / noise.sky_time_s);
+  Forget(keep, kSkySlow, state);
+  Forget(keep, kSkyForeign, state);
+}
+
+}  // namespace polnav::nav::ukf

@@ -1,0 +1,55 @@
+#include "nav/ukf/sky_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nav/polarization/sky_heading.h"
+
+namespace polnav::nav::ukf {
+namespace {
+
+constexpr double kReferenceDop = 0.5;  // at which options' white part is stated
+constexpr double kLeastClear = 0.8;    // of the pattern of clear_dop: haze and cirrus vary
+
+}  // namespace
+
+SkyReading WeighReading(const PolarizedLight& light, const Eigen::Vector3d& sun_W,
+                        const Eigen::Quaterniond& q_WS, const PolarizationOptions& options) {
+  const Eigen::Vector3d look_W = q_WS * Eigen::Vector3d::UnitZ();
+  const double clear = kLeastClear * RayleighDop(look_W, sun_W, options.clear_dop);
+  const double foreign = std::max(0.0, clear / light.dop - 1.0);
+  return {.light = light,
+          .sun_W = sun_W,
+          .white_rad = DegToRad(options.reading_sigma_deg) * kReferenceDop / light.dop,
+          .slow_rad = DegToRad(options.correlated_sigma_deg),
+          .foreign_rad = DegToRad(options.foreign_sigma_deg) * foreign};
+}
+
+double AxisOf(const State& state, const Eigen::Quaterniond& q_IS, const Eigen::Vector3d& sun_W,
+              const Error& error) {
+  const Eigen::Quaterniond q_WS = Exp(error.segment<3>(kTheta)) * (state.q_WI * q_IS);
+  const Eigen::Vector3d s_S = q_WS.conjugate() * sun_W;
+  return std::atan2(s_S.x(), -s_S.y());
+}
+
+Expected<1> ExpectSky(const State& state, const Eigen::Quaterniond& q_IS,
+                      const SkyReading& reading) {
+  Covariance left = state.P;
+  Columns<3> columns;
+  for (int k = 0; k < 3; ++k) TakeColumn(kTheta + k, left, columns.col(k));
+  Eigen::Matrix<double, 1, kSize> H = Eigen::Matrix<double, 1, kSize>::Zero();
+  H(kSkySlow) = reading.slow_rad;
+  H(kSkyForeign) = reading.foreign_rad;
+  H(kSkyOffset) = 1.0;
+  const double nominal = AxisOf(state, q_IS, reading.sun_W, Error::Zero());
+  const double known = H.tail<kSlow>().dot(state.slow);
+  // Points follow the E-vector all the way round, so that a heading of two right angles' doubt
+  // still has a mean; the measured axis alone knows no ends.
+  const auto h = [&](const Error& e) {
+    const double axis = AxisOf(state, q_IS, reading.sun_W, e);
+    return Eigen::Matrix<double, 1, 1>(WrapPi(axis - nominal) + known + H.dot(e));
+  };
+  return Expect<1, 3>(h, H, columns, left);
+}
+
+}  // namespace polnav::nav::ukf
