@@ -56,6 +56,32 @@ void Diagnostics::Add(const nav::Report& report) {
                     .vision_nis = report.vision_nis});
 }
 
+void Diagnostics::AddInnovations(const nav::Report& report) {
+  for (const nav::Innovation& innovation : report.innovations) {
+    InnovationCounts& counts = innovations[std::string(innovation.sensor)];
+    counts.dof = innovation.dof;
+    if (innovation.gated) {
+      ++counts.gated;
+      continue;
+    }
+    ++counts.count;
+    counts.nis_sum += innovation.nis;
+  }
+}
+
+Json NisJson(const Diagnostics& diagnostics) {
+  Json json = nullptr;
+  for (const auto& [sensor, counts] : diagnostics.innovations) {
+    const double mean =
+        counts.count > 0 ? counts.nis_sum / static_cast<double>(counts.count) : 0.0;
+    json[sensor] = {{"mean", mean},
+                    {"dof", counts.dof},
+                    {"count", counts.count},
+                    {"gated", counts.gated}};
+  }
+  return json;
+}
+
 Json ToJson(const Diagnostics& diagnostics) {
   const std::vector<FrameDiagnostics>& frames = diagnostics.frames;
   if (frames.empty()) return nullptr;

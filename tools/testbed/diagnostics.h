@@ -4,7 +4,9 @@
 // times are not here: they are in RunRecord::timing.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "nav/api/estimate.h"
@@ -25,13 +27,29 @@ struct FrameDiagnostics {
   std::optional<double> vision_nis;
 };
 
+// Of one sensor's updates of a filter.
+struct InnovationCounts {
+  double nis_sum = 0.0;  // of those that were not gated
+  int dof = 0;
+  std::size_t count = 0;  // not gated
+  std::size_t gated = 0;
+};
+
 struct Diagnostics {
   std::vector<FrameDiagnostics> frames;  // that were answered
   std::vector<nav::SkyResidual> sky;
 
+  std::map<std::string, InnovationCounts> innovations;  // by sensor
+
   // Of a frame.
   void Add(const nav::Report& report);
+  // Of any measurement.
+  void AddInnovations(const nav::Report& report);
 };
+
+// estimators.<name>.nis of result.json: {sensor: {mean, dof, count, gated}}; mean is dof where the
+// filter is consistent, a little less since the gate takes away the tail. Null without updates.
+[[nodiscard]] Json NisJson(const Diagnostics& diagnostics);
 
 // estimators.<name>.diagnostics of result.json. Null without frames. NIS of the sky: mean squared
 // residual over sigma, of what was not gated; 1 when the sigmas are honest.

@@ -5,6 +5,23 @@
 #include <stdexcept>
 
 namespace polnav::testbed {
+namespace {
+
+AnyEstimator MakeWalking(const EstimatorInfo& info, const Scenario& scenario, const nav::Rig& rig,
+                         const nav::StartPrior& start) {
+  std::optional<nav::SkySource> sky;
+  if (info.needs_polarimeter) {
+    sky = {scenario.estimators.polarization, rig.polarimeter.value(), SunFor(scenario.site)};
+  }
+  if (info.name.starts_with("ukf_paper")) {
+    return nav::PaperUkf(scenario.estimators.ukf_paper, rig.imu.value(), rig.optical_flow.value(),
+                         start, std::move(sky));
+  }
+  return nav::Ukf(scenario.estimators.ukf, rig.imu.value(), rig.optical_flow.value(), start,
+                  std::move(sky));
+}
+
+}  // namespace
 
 const EstimatorInfo* FindInfo(std::string_view name) {
   const auto* const info = std::find_if(kEstimators.begin(), kEstimators.end(),
@@ -27,6 +44,7 @@ AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario, co
     return nav::CompassEstimator(options, rig.polarization_camera.value(), SunFor(scenario.site),
                                  start);
   }
+  if (info.needs_optical_flow) return MakeWalking(info, scenario, rig, start);
   if (info.needs_polarimeter && !info.needs_stereo) {
     return nav::PolarimeterCompass(scenario.estimators.polarization, rig.polarimeter.value(),
                                    SunFor(scenario.site), start);

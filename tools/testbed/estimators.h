@@ -9,6 +9,8 @@
 #include "nav/polarization/compass_estimator.h"
 #include "nav/polarization/polarimeter_compass.h"
 #include "nav/stereo/estimator.h"
+#include "nav/ukf/paper_ukf.h"
+#include "nav/ukf/ukf.h"
 #include "tools/testbed/scenario.h"
 
 namespace polnav::testbed {
@@ -19,10 +21,12 @@ struct EstimatorInfo {
   bool needs_stereo = false;
   bool needs_polarimeter = false;
   bool needs_polarization_camera = false;
+  bool needs_imu = false;
+  bool needs_optical_flow = false;
   bool heading_only = false;  // a compass
 };
 
-inline constexpr std::array<EstimatorInfo, 7> kEstimators{{
+inline constexpr std::array<EstimatorInfo, 11> kEstimators{{
     {.name = "stereo",
      .description = "stereo visual odometry in a sliding window, without the sky",
      .needs_stereo = true},
@@ -50,14 +54,32 @@ inline constexpr std::array<EstimatorInfo, 7> kEstimators{{
      .description = "heading from sky images: the middle of the picture as one reading",
      .needs_polarization_camera = true,
      .heading_only = true},
+    {.name = "ukf_paper",
+     .description = "walking: IMU, optical flow and sky in a Kalman filter, as printed [Zeng2020]",
+     .needs_polarimeter = true,
+     .needs_imu = true,
+     .needs_optical_flow = true},
+    {.name = "ukf_paper_no_polarization",
+     .description = "the same without the sky [Zeng2020]",
+     .needs_imu = true,
+     .needs_optical_flow = true},
+    {.name = "ukf",
+     .description = "walking: IMU, optical flow and sky, with biases, on the manifold",
+     .needs_polarimeter = true,
+     .needs_imu = true,
+     .needs_optical_flow = true},
+    {.name = "ukf_no_polarization",
+     .description = "the same without the sky",
+     .needs_imu = true,
+     .needs_optical_flow = true},
 }};
 
 // Null when there is none of that name; InfoOf then throws std::logic_error.
 [[nodiscard]] const EstimatorInfo* FindInfo(std::string_view name);
 [[nodiscard]] const EstimatorInfo& InfoOf(std::string_view name);
 
-using AnyEstimator =
-    std::variant<nav::StereoEstimator, nav::PolarimeterCompass, nav::CompassEstimator>;
+using AnyEstimator = std::variant<nav::StereoEstimator, nav::PolarimeterCompass,
+                                  nav::CompassEstimator, nav::PaperUkf, nav::Ukf>;
 
 // The scenario names it and the rig carries what it needs.
 [[nodiscard]] AnyEstimator MakeEstimator(const std::string& name, const Scenario& scenario,

@@ -164,6 +164,7 @@ nav::Report Listener::Feed(const nav::Measurement& measurement, RunningEstimator
   const nav::Report report =
       std::visit([&](auto& estimator) { return estimator.Process(measurement); }, e.estimator);
   e.run.counts.Add(report);
+  e.run.diagnostics.AddInnovations(report);
   if (report.estimate) e.run.estimates.push_back(*report.estimate);
   return report;
 }

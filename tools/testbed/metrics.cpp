@@ -106,6 +106,11 @@ bool IsMetric(const std::string& path) {
   if (parts.size() == 3 && parts[0] == "timing_ms") {
     return parts[2] == "median" || parts[2] == "p99";
   }
+  // By sensor: which ones an estimator judges is known only when it has run.
+  if (parts.size() == 5 && parts[0] == "estimators" && parts[2] == "nis") {
+    return FindInfo(parts[1]) != nullptr &&
+           (parts[4] == "mean" || parts[4] == "count" || parts[4] == "gated");
+  }
   const std::vector<std::string> all = AllMetrics();
   return std::find(all.begin(), all.end(), path) != all.end();
 }

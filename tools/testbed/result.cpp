@@ -39,6 +39,7 @@ Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
   if (const Json diagnostics = testbed::ToJson(run.diagnostics); !diagnostics.is_null()) {
     json["diagnostics"] = diagnostics;
   }
+  if (const Json nis = NisJson(run.diagnostics); !nis.is_null()) json["nis"] = nis;
   json["measurements"] = ToJson(run.counts);
   if (truth.empty()) return json;  // nothing to score against
   // No answer at all leaves every metric out: criteria about it fail.

@@ -29,6 +29,10 @@ std::string HashOf(const std::vector<nav::Estimate>& estimates) {
     hash.Update(e.T_WB.p.data(), 3 * sizeof(double));
     hash.Update(e.covariance.data(), 36 * sizeof(double));
     hash.UpdateValue(e.tracked);
+    if (!e.biases) continue;
+    hash.Update(e.biases->gyro_rad_s.data(), 3 * sizeof(double));
+    hash.Update(e.biases->accel_m_s2.data(), 3 * sizeof(double));
+    hash.Update(e.biases->covariance.data(), 36 * sizeof(double));
   }
   return hash.HexDigest();
 }

@@ -150,6 +150,14 @@ void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
       FailAt(document, "estimators.run",
              fmt::format("'{}' needs a polarimeter, but sensors.polarimeter is off", name));
     }
+    if (info.needs_imu && !scenario.sensors.imu) {
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' needs an IMU, but sensors.imu is off", name));
+    }
+    if (info.needs_optical_flow && !scenario.sensors.optical_flow) {
+      FailAt(document, "estimators.run",
+             fmt::format("'{}' needs optical flow, but sensors.optical_flow is off", name));
+    }
     if (info.needs_polarization_camera && !scenario.sensors.polarization_camera) {
       FailAt(document, "estimators.run",
              fmt::format("'{}' needs a sky camera, but sensors.polarization_camera is off", name));

@@ -11,6 +11,7 @@
 #include "nav/polarization/compass_options.h"
 #include "nav/polarization/options.h"
 #include "nav/stereo/options.h"
+#include "nav/ukf/options.h"
 #include "sim/faults/fault_options.h"
 #include "sim/simulator.h"
 #include "sky/skylight.h"
@@ -41,6 +42,8 @@ struct EstimatorOptions {
   nav::StereoOptions stereo;
   nav::PolarizationOptions polarization;
   nav::CompassOptions compass;
+  nav::UkfOptions ukf;
+  nav::PaperUkfOptions ukf_paper;
   // The sky camera goes through a calibration turn before the run; see calibration_turn.h.
   bool calibrate_sky_camera = false;
 
@@ -52,6 +55,8 @@ struct EstimatorOptions {
     v("stereo", stereo);
     v("polarization", polarization);
     v("compass", compass);
+    v("ukf", ukf);
+    v("ukf_paper", ukf_paper);
     v("calibrate_sky_camera", calibrate_sky_camera);
   }
 };

@@ -47,6 +47,10 @@ void CheckSettable(const ScenarioOverride& change) {
 std::vector<std::string> DefaultEstimators(const nav::Rig& rig) {
   if (rig.stereo && rig.polarimeter) return {"stereo", "stereo_polarization"};
   if (rig.stereo) return {"stereo"};
+  if (rig.imu && rig.optical_flow) {
+    if (rig.polarimeter) return {"ukf_no_polarization", "ukf"};
+    return {"ukf_no_polarization"};
+  }
   if (rig.polarization_camera) return {"compass_stokes"};
   if (rig.polarimeter) return {"polarization"};
   return {};
