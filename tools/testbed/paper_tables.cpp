@@ -22,6 +22,7 @@ PaperTable PaperHeadings(const Scenario& scenario) {
             .signed_mean = true,
             .rows = many ? kFan2020ManyClouds_deg : kFan2020FewClouds_deg};
   }
+  if (Cites(scenario, kZeng2020)) return {.paper = kZeng2020, .rows = kZeng2020Heading_deg};
   return {};
 }
 
@@ -29,6 +30,7 @@ PaperTable PaperPositions(const Scenario& scenario) {
   if (Cites(scenario, kChu2021) && !scenario.vehicle.turntable) {
     return {.paper = kChu2021, .rows = kChu2021Position_m};
   }
+  if (Cites(scenario, kZeng2020)) return {.paper = kZeng2020, .rows = kZeng2020Position_m};
   return {};
 }
 

@@ -52,6 +52,17 @@ inline constexpr std::array<PaperRow, 2> kFan2020ManyClouds_deg{{
     {"RANSAC + TLS, many clouds", {}, -0.4897, 0.7819, 0.6096},
 }};
 
+// A hexapod's simulated walks, about these [Zeng2020, simulation]; headings were 0.2 and 0.05 rad.
+inline constexpr std::string_view kZeng2020 = "Zeng2020";
+inline constexpr std::array<PaperRow, 2> kZeng2020Heading_deg{{
+    {"inertia + flow", {}, {}, 11.5, {}},
+    {"inertia + flow + polarization", {}, {}, 2.9, {}},
+}};
+inline constexpr std::array<PaperRow, 2> kZeng2020Position_m{{
+    {"inertia + flow", {}, {}, 0.40, {}},
+    {"inertia + flow + polarization", {}, {}, 0.10, {}},
+}};
+
 // Of the scenario's paper; no rows where that has none.
 [[nodiscard]] PaperTable PaperHeadings(const Scenario& scenario);
 [[nodiscard]] PaperTable PaperPositions(const Scenario& scenario);
