@@ -37,7 +37,7 @@ struct LevelGround {
 };
 
 // Constant velocity (W) and turn rate (B) from a pose: what is felt t seconds later.
-struct Motion {
+struct GlideMotion {
   nav::Pose start;
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_B_rad_s = Eigen::Vector3d::Zero();
@@ -54,7 +54,7 @@ struct Motion {
   }
 };
 
-inline std::vector<FlowInterval> Intervals(OpticalFlow& flow, const Motion& motion, int count,
+inline std::vector<FlowInterval> Intervals(OpticalFlow& flow, const GlideMotion& motion, int count,
                                            nav::TimeNs period = 4'000'000) {
   std::vector<FlowInterval> intervals;
   for (nav::TimeNs k = 0; static_cast<int>(intervals.size()) < count; ++k) {

@@ -34,7 +34,7 @@ const Plaza& World() {
   return plaza;
 }
 
-std::vector<FlowInterval> Moved(const OpticalFlowOptions& options, const Motion& motion,
+std::vector<FlowInterval> Moved(const OpticalFlowOptions& options, const GlideMotion& motion,
                                 int count) {
   OpticalFlow flow(options, World().ground.terrain, nullptr, 1, 0);
   return Intervals(flow, motion, count);
@@ -75,11 +75,11 @@ TEST(OpticalFlowCamera, SeesTheMotionThatTheGeometryHas) {
   const OpticalFlowOptions options = PerfectFlow();
   OpticalFlowCamera camera(World().scene, World().sky, options, 0.1, 1, 0);
   for (const double height_m : {0.4, 1.0}) {
-    for (const Motion& motion :
-         {Motion{World().On(height_m, 1.0), {0.5 * height_m, 0.0, 0.0}, {0, 0, 0}},
-          Motion{World().On(height_m, 1.0), {0.0, -0.3 * height_m, 0.05}, {0, 0, 0}},
-          Motion{World().On(height_m, 1.0), {0, 0, 0}, {0.5, 0.0, 0.2}},
-          Motion{World().On(height_m, 1.0), {0.1, 0.1, 0.0}, {0.1, 0.6, 0.0}}}) {
+    for (const GlideMotion& motion :
+         {GlideMotion{World().On(height_m, 1.0), {0.5 * height_m, 0.0, 0.0}, {0, 0, 0}},
+          GlideMotion{World().On(height_m, 1.0), {0.0, -0.3 * height_m, 0.05}, {0, 0, 0}},
+          GlideMotion{World().On(height_m, 1.0), {0, 0, 0}, {0.5, 0.0, 0.2}},
+          GlideMotion{World().On(height_m, 1.0), {0.1, 0.1, 0.0}, {0.1, 0.6, 0.0}}}) {
       const Errors e = ErrorsOf(camera, options, Moved(options, motion, 4));
       EXPECT_LT(e.mean.cwiseAbs().maxCoeff(), 0.02) << motion.v_W_m_s.transpose();
       EXPECT_GT(e.quality, 0.9);
@@ -98,8 +98,8 @@ TEST(OpticalFlowCamera, IsAsNoisyAsTheModelSays) {
     OpticalFlowCamera camera(World().scene, World().sky, options, contrast, 1, 0);
     for (const double height_m : {0.4, 1.0}) {
       for (const double rate_rad_s : {0.0, 0.2, 0.8}) {
-        const Motion motion{World().On(height_m, 1.0),
-                            rate_rad_s * height_m * Vector3d(0.6, 0.8, 0.0)};
+        const GlideMotion motion{World().On(height_m, 1.0),
+                                 rate_rad_s * height_m * Vector3d(0.6, 0.8, 0.0)};
         const auto intervals = Moved(options, motion, 60);
         OpticalFlowModel model(options, contrast, 1, 0);
         const Errors drawn = ErrorsOf(camera, options, intervals);

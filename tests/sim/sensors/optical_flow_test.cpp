@@ -20,7 +20,7 @@ const LevelGround& Ground() {
 }
 
 std::vector<nav::OpticalFlowSample> Readings(const OpticalFlowOptions& options,
-                                             const Motion& motion, int count,
+                                             const GlideMotion& motion, int count,
                                              std::uint64_t trial = 0) {
   OpticalFlow flow(options, Ground().terrain, nullptr, 1, trial);
   OpticalFlowModel model(options, 0.1, 1, trial);
@@ -31,7 +31,7 @@ std::vector<nav::OpticalFlowSample> Readings(const OpticalFlowOptions& options,
   return readings;
 }
 
-nav::OpticalFlowSample FirstReading(const OpticalFlowOptions& options, const Motion& motion) {
+nav::OpticalFlowSample FirstReading(const OpticalFlowOptions& options, const GlideMotion& motion) {
   return Readings(options, motion, 1).front();
 }
 
@@ -73,7 +73,7 @@ TEST(OpticalFlow, ATurnReadsItsAngleAndTheGyroscopesTheSame) {
 TEST(OpticalFlow, LessTheGyroscopesItIsVelocityOverRangeHoweverTilted) {
   const Vector3d v_W(0.15, -0.1, 0.02);
   for (const Vector3d& tilt : {Vector3d(0.1, 0.0, 0.0), Vector3d(-0.05, 0.2, 0.7)}) {
-    Motion motion{Above(0.5, tilt), v_W, {0.3, -0.4, 0.2}};
+    GlideMotion motion{Above(0.5, tilt), v_W, {0.3, -0.4, 0.2}};
     const auto reading = FirstReading(PerfectFlow(), motion);
     const Truth middle = motion.At(10'000'000);
     const Eigen::Quaterniond q_WF = middle.T_WB.q * NominalOpticalFlow(PerfectFlow()).T_BF.q;
