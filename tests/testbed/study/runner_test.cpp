@@ -18,15 +18,15 @@
 namespace polnav::testbed {
 namespace {
 
-struct Run {
+struct Course {
   int signal = 0;
   std::map<std::uint64_t, TrialRecord> records;
   int finished = 0;
 };
 
-Run RunAll(std::uint64_t trials, int jobs, const TrialFunction& trial,
-           const WorkerLimits& limits = {}) {
-  Run run;
+Course RunAll(std::uint64_t trials, int jobs, const TrialFunction& trial,
+              const WorkerLimits& limits = {}) {
+  Course run;
   std::uint64_t next = 0;
   Runner runner(trial, jobs, limits,
                 {.next = [&]() -> std::optional<std::uint64_t> {
@@ -50,11 +50,11 @@ TrialRecord Fine(std::uint64_t trial) {
 }
 
 [[gnu::noinline]] void Crash() {
-  std::signal(SIGSEGV, SIG_DFL);  // the sanitizers' own handler would exit instead
+  ::signal(SIGSEGV, SIG_DFL);  // the sanitizers' own handler would exit instead
   ::raise(SIGSEGV);
 }
 
-void ExpectOthersFine(const Run& run, std::uint64_t trials, std::uint64_t culprit) {
+void ExpectOthersFine(const Course& run, std::uint64_t trials, std::uint64_t culprit) {
   EXPECT_EQ(run.signal, 0);
   EXPECT_EQ(run.finished, static_cast<int>(trials)) << "each trial once";
   for (std::uint64_t i = 0; i < trials; ++i) {
@@ -67,7 +67,7 @@ void ExpectOthersFine(const Run& run, std::uint64_t trials, std::uint64_t culpri
 
 TEST(Runner, RunsEveryTrialOnceInProcessesOfItsOwn) {
   for (const int jobs : {1, 2, 5}) {
-    const Run run = RunAll(40, jobs, Fine);
+    const Course run = RunAll(40, jobs, Fine);
     ExpectOthersFine(run, 40, 40);
     std::map<std::string, int> processes;
     for (const auto& [trial, record] : run.records) ++processes[record.detail];
@@ -78,7 +78,7 @@ TEST(Runner, RunsEveryTrialOnceInProcessesOfItsOwn) {
 
 TEST(Runner, ASegmentationFaultIsOneOutcome) {
   for (const int jobs : {1, 2}) {
-    const Run run = RunAll(8, jobs, [](std::uint64_t trial) {
+    const Course run = RunAll(8, jobs, [](std::uint64_t trial) {
       if (trial == 3) Crash();
       return Fine(trial);
     });
@@ -89,7 +89,7 @@ TEST(Runner, ASegmentationFaultIsOneOutcome) {
 }
 
 TEST(Runner, AnExitIsOneOutcomeWithItsLastWords) {
-  const Run run = RunAll(4, 2, [](std::uint64_t trial) {
+  const Course run = RunAll(4, 2, [](std::uint64_t trial) {
     if (trial == 1) {
       std::fprintf(stderr, "no license\n");
       std::_Exit(5);
@@ -102,12 +102,12 @@ TEST(Runner, AnExitIsOneOutcomeWithItsLastWords) {
 }
 
 TEST(Runner, AHangIsOneOutcome) {
-  const Run run = RunAll(6, 2,
-                         [](std::uint64_t trial) {
-                           while (trial == 2) ::pause();
-                           return Fine(trial);
-                         },
-                         {.time_s = 0.3});
+  const Course run = RunAll(6, 2,
+                            [](std::uint64_t trial) {
+                              while (trial == 2) ::pause();
+                              return Fine(trial);
+                            },
+                            {.time_s = 0.3});
   ExpectOthersFine(run, 6, 2);
   EXPECT_EQ(run.records.at(2).outcome, Outcome::kTimeout);
   EXPECT_GE(run.records.at(2).wall_s, 0.3);
@@ -122,7 +122,7 @@ TEST(Runner, RunningOutOfMemoryIsOneOutcome) {
     }
     return Fine(trial);
   };
-  const Run run = RunAll(5, 2, greedy, {.memory_mb = 512.0});
+  const Course run = RunAll(5, 2, greedy, {.memory_mb = 512.0});
   ExpectOthersFine(run, 5, 2);
   EXPECT_EQ(run.records.at(2).outcome, Outcome::kOutOfMemory);
 }
@@ -138,7 +138,7 @@ TEST(Runner, RunningOutOfMemoryInAThreadIsTheSame) {
     }
     return Fine(trial);
   };
-  const Run run = RunAll(2, 1, greedy, {.memory_mb = 512.0});
+  const Course run = RunAll(2, 1, greedy, {.memory_mb = 512.0});
   EXPECT_EQ(run.records.at(0).outcome, Outcome::kOutOfMemory) << run.records.at(0).detail;
 }
 #endif
@@ -146,7 +146,7 @@ TEST(Runner, RunningOutOfMemoryInAThreadIsTheSame) {
 // Fails only in a process that has run something before: in a fresh one the trial is fine, and
 // that is what counts.
 TEST(Runner, NoOutcomeDependsOnWhatRanBefore) {
-  const Run run = RunAll(6, 1, [](std::uint64_t trial) {
+  const Course run = RunAll(6, 1, [](std::uint64_t trial) {
     static int served = 0;
     if (++served > 2) Crash();
     return Fine(trial);
@@ -160,7 +160,7 @@ TEST(Runner, AWorkerKilledFromOutsideSaysNothingOfItsTrial) {
                                                             PROT_READ | PROT_WRITE,
                                                             MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   ASSERT_NE(kills, MAP_FAILED);
-  const Run run = RunAll(4, 2, [&](std::uint64_t trial) {
+  const Course run = RunAll(4, 2, [&](std::uint64_t trial) {
     if (trial == 1 && kills->fetch_add(1) == 0) ::kill(::getpid(), SIGKILL);
     return Fine(trial);
   });

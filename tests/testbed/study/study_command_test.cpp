@@ -50,8 +50,8 @@ TEST_F(StudyCommand, RunsAndSaysWhatCameOut) {
 TEST_F(StudyCommand, TrialsThatDoNotGoOkAreOneUnlessACriterionAllowsThem) {
   const ClosedLoop crash = [](const Scenario& s, const RunOptions& o, const auto& p) {
     if (o.trial == 1) {
-      std::signal(SIGSEGV, SIG_DFL);
-      std::raise(SIGSEGV);
+      ::signal(SIGSEGV, SIG_DFL);
+      ::raise(SIGSEGV);
     }
     return DrawnRun(s, o, p);
   };

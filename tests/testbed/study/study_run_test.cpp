@@ -216,7 +216,7 @@ TEST_F(StudyRun, WhatWasWrittenBeforeTheDiskFilledUpIsKept) {
   const StudyRunResult whole = Run("whole.sqlite");
   const pid_t child = ::fork();
   if (child == 0) {
-    std::signal(SIGXFSZ, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{160'000, 160'000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     const std::string error = ErrorOf([&] {
