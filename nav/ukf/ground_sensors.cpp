@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/inertial/options.h"
+
 namespace polnav::nav::ukf {
 namespace {
 
-constexpr double kNearest_m = 0.02;  // a sigma point may fall through the ground
-constexpr double kFlattest = 0.1;    // sine of the optical axis below the horizon
+constexpr double kNearest_m = 0.02;   // a sigma point may fall through the ground
+constexpr double kFlattest = 0.1;     // sine of the optical axis below the horizon
 constexpr double kKnownHeight = 0.3;  // one sigma, as a share of the height
 
 double Square(double x) { return x * x; }
@@ -27,13 +29,17 @@ struct Motion {
 Motion MotionOf(const State& state, const GroundSensor& sensor, const FlowInterval& interval,
                 const Error& e) {
   Motion m{.R_FI = sensor.T_IF.q.conjugate().toRotationMatrix()};
-  Eigen::Vector3d rate =
-      interval.rate_rad_s - state.gyro_bias - e.segment<3>(kGyroBias);
+  Eigen::Vector3d rate = interval.rate_rad_s - state.gyro_bias - e.segment<3>(kGyroBias);
   rate.z() -= (state.Slow(kGyroScale) + e(kGyroScale)) * interval.rate_rad_s.z();
   const Eigen::Vector3d v_I =
-      state.q_WI.conjugate() *
-      (state.v_WI + e.segment<3>(kVelocity) - interval.gained_m_s);
-  m.v_F = m.R_FI * (v_I + rate.cross(sensor.T_IF.p));
+      state.q_WI.conjugate() * (state.v_WI + e.segment<3>(kVelocity) - interval.gained_m_s);
+  // The velocity gained was reckoned with a bias and a level that err: half of the interval's.
+  const Eigen::Vector3d missed_I =
+      0.5 * interval.duration_s *
+      (e.segment<3>(kAccelBias) +
+       state.q_WI.conjugate() *
+           e.segment<3>(kTheta).cross(Eigen::Vector3d(0.0, 0.0, -kGravity_m_s2)));
+  m.v_F = m.R_FI * (v_I + missed_I + rate.cross(sensor.T_IF.p));
   m.rate_F = m.R_FI * rate;
   return m;
 }
@@ -51,8 +57,8 @@ double RangeOf(const State& state, const GroundSensor& sensor, const Error& erro
   return height / Down(q_WI * sensor.T_IF.q);
 }
 
-Eigen::Vector2d FlowOf(const State& state, const GroundSensor& sensor,
-                       const FlowInterval& interval, const Error& error) {
+Eigen::Vector2d FlowOf(const State& state, const GroundSensor& sensor, const FlowInterval& interval,
+                       const Error& error) {
   const double range = std::max(RangeOf(state, sensor, error), kNearest_m);
   const Eigen::Vector2d flow = Flow(MotionOf(state, sensor, interval, error), range);
   const double scale = 1.0 + state.Slow(kFlowScale) + error(kFlowScale);
@@ -94,6 +100,7 @@ Expected<2> ExpectFlow(const State& state, const GroundSensor& sensor,
   Eigen::Matrix<double, 2, kSize> H = Eigen::Matrix<double, 2, kSize>::Zero();
   H.middleCols<3>(kVelocity) = by_v_I * state.q_WI.conjugate().toRotationMatrix();
   H.middleCols<3>(kGyroBias) = -by_rate;
+  H.middleCols<3>(kAccelBias) = 0.5 * interval.duration_s * by_v_I;
   H.col(kGyroScale) = -by_rate.col(2) * interval.rate_rad_s.z();
   H.col(kFlowScale) = flow;
   H.col(kFlowYaw) = Eigen::Vector2d(flow.y(), -flow.x());
@@ -116,10 +123,10 @@ double FlowNoise(const State& state, const GroundSensor& sensor, const FlowInter
   const Motion m = MotionOf(state, sensor, interval, Error::Zero());
   const double range = std::max(RangeOf(state, sensor, Error::Zero()), kNearest_m);
   const double translation2 = m.v_F.head<2>().squaredNorm() / Square(range);
-  const double share2 = Square(options.gyro_scale_sigma) + Square(sensor.calibration.mount_sigma_rad);
+  const double share2 =
+      Square(options.gyro_scale_sigma) + Square(sensor.calibration.mount_sigma_rad);
   return Square(sensor.calibration.flow_noise_rad_s_sqrt_hz) / integration_s +
-         translation2 * Square(options.roughness_sigma_m / range) +
-         m.rate_F.squaredNorm() * share2;
+         translation2 * Square(options.roughness_sigma_m / range) + m.rate_F.squaredNorm() * share2;
 }
 
 bool KnowsHeight(const State& state, const GroundSensor& sensor) {

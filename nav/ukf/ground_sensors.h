@@ -25,6 +25,7 @@ struct FlowInterval {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  // mean, as read by the gyroscopes
   // Velocity at the end less the mean one, in W.
   Eigen::Vector3d gained_m_s = Eigen::Vector3d::Zero();
+  double duration_s = 0.0;
 };
 
 // Of the state moved by an error.

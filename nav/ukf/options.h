@@ -21,9 +21,9 @@ struct UkfOptions {
   // two readings side by side look at it. Larger holds the height less tightly.
   double terrain_sigma_m_sqrt_m = 0.005;
   double roughness_sigma_m = 0.002;
-  double slope_sigma = 0.05;         // seen beside the nadir as the body tilts [-]
-  double range_scale_sigma = 0.013;  // speed of sound and offset, as a share of the range
-  double min_quality = 0.2;          // of a reading of the optical flow; below it is left out
+  double slope_sigma = 0.05;          // seen beside the nadir as the body tilts [-]
+  double range_scale_sigma = 0.013;   // speed of sound and offset, as a share of the range
+  double min_quality = 0.2;           // of a reading of the optical flow; below it is left out
   double sky_offset_sigma_deg = 0.2;  // what does not average away: mounting, gains, haze
   double gate_sigmas = 4.0;           // readings beyond are left out ...
   double doubt_after_s = 1.5;  // ... unless they agree with each other for so long: then the filter

@@ -175,11 +175,11 @@ Outcome PaperUkf::TakeFlow(const OpticalFlowSample& sample, Report& report) {
   const Eigen::Vector3d variance(aside, aside, Square2(options_.climb_sigma_m_s));
   const Innovation innovation{.stamp = sample.stamp, .sensor = "optical_flow", .dof = 3};
   return Correct<3>(expected, measured, variance, points, innovation, report) ? Outcome::kUsed
-                                                                               : Outcome::kUnusable;
+                                                                              : Outcome::kUnusable;
 }
 
-// Compass heading = sun's azimuth + pi/2 + phi, an axis: phi turns from S's x towards its y, against
-// the compass; the nearer of its two ends counts.
+// Compass heading = sun's azimuth + pi/2 + phi, an axis: phi turns from S's x towards its y,
+// against the compass; the nearer of its two ends counts.
 Outcome PaperUkf::TakeLight(const PolarizationSample& sample, Report& report) {
   const bool frozen = newest_light_ && sample.channel == newest_light_->channel;
   newest_light_ = sample;

@@ -11,9 +11,9 @@ namespace polnav::nav::ukf {
 namespace {
 
 constexpr double kFlicker_s = 30.0;
-constexpr double kTurn_s = 2.0;   // of a turn: crooked axes make it a tilt meanwhile
-constexpr double kShake_s = 0.05;  // of a step's shock
-constexpr int kCurved = 6;        // attitude and rate
+constexpr double kTurn_s = 2.0;     // of a turn: crooked axes make it a tilt meanwhile
+constexpr double kShake_s = 0.05;   // of a step's shock
+constexpr int kCurved = 6;          // attitude and rate
 constexpr Eigen::Index kMoved = 9;  // theta, u, p: what an interval changes by more than a factor
 
 using Moved = Eigen::Matrix<double, kMoved, 1>;
@@ -23,11 +23,11 @@ const Eigen::Vector3d kGravity_W(0.0, 0.0, -kGravity_m_s2);
 double Square(double x) { return x * x; }
 
 struct Interval {
-  Eigen::Vector3d rate;      // without bias
-  Eigen::Vector3d force;     // likewise
-  double gyro_z = 0.0;       // as read
+  Eigen::Vector3d rate;   // without bias
+  Eigen::Vector3d force;  // likewise
+  double gyro_z = 0.0;    // as read
   double h = 0.0;
-  Eigen::Quaterniond q;      // before
+  Eigen::Quaterniond q;  // before
   Eigen::Vector3d v;
   Eigen::Quaterniond q_next;  // after
   Eigen::Vector3d v_next;
@@ -35,8 +35,8 @@ struct Interval {
 
 // Where a sigma point goes, relative to where the nominal state goes.
 Moved Carry(const Interval& i, const Error& e) {
-  const Eigen::Vector3d rate = i.rate - e.segment<3>(kGyroBias) -
-                               Eigen::Vector3d(0.0, 0.0, e(kGyroScale) * i.gyro_z);
+  const Eigen::Vector3d rate =
+      i.rate - e.segment<3>(kGyroBias) - Eigen::Vector3d(0.0, 0.0, e(kGyroScale) * i.gyro_z);
   const Eigen::Quaterniond half_turn = Exp(0.5 * i.h * rate);
   const Eigen::Quaterniond start = Exp(e.segment<3>(kTheta));
   const Eigen::Quaterniond half = start * (i.q * half_turn);

@@ -3,8 +3,8 @@
 // Readings are means over the interval, the force seen from the attitude half way (docs/imu.md):
 //   w = gyro - gyro_bias - scale,  q' = q Exp(w h)
 //   v' = v + h (q Exp(w h / 2) (accel - accel_bias) + g),  p' = p + h (v + v') / 2
-// Curved along the attitude's error and that of the rate; linear, and so exact without sigma points,
-// along all others (sigma_points.h).
+// Curved along the attitude's error and that of the rate; linear, and so exact without sigma
+// points, along all others (sigma_points.h).
 #pragma once
 
 #include "nav/api/calibration.h"

@@ -23,8 +23,7 @@ using Columns = Eigen::Matrix<double, kSize, K>;
 
 // The direction is a functional of the error: of it, P a is its covariance with all and a . P a its
 // variance. A variance that is none (lost to rounding) gives an empty column.
-inline void TakeColumn(const Error& p_a, double variance, Covariance& P,
-                       Eigen::Ref<Error> column) {
+inline void TakeColumn(const Error& p_a, double variance, Covariance& P, Eigen::Ref<Error> column) {
   if (!(variance > 0.0)) {
     column.setZero();
     return;
@@ -50,7 +49,7 @@ inline void TakeColumn(Eigen::Index i, Eigen::Index j, double factor, Covariance
 template <int Z>
 struct Expected {
   Eigen::Matrix<double, Z, 1> mean;
-  Eigen::Matrix<double, Z, Z> covariance;      // without the measurement's own noise
+  Eigen::Matrix<double, Z, Z> covariance;  // without the measurement's own noise
   Eigen::Matrix<double, kSize, Z> covariance_with_state;
 };
 

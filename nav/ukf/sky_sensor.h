@@ -2,8 +2,8 @@
 //
 // Under a Rayleigh sky the E-vector is across ray and sun [Zeng2020, eqs 2-10]: seen in the
 // instrument S, along z x s with s = R_SI R_WI^T s_W, at the angle phi = atan2(s_x, -s_y), an axis
-// (mod pi). The whole attitude is in it: a body that tilts reads otherwise, and by how much tells of
-// the tilt. For a level one it is the papers' formula, heading = phi + sun's azimuth +- pi/2.
+// (mod pi). The whole attitude is in it: a body that tilts reads otherwise, and by how much tells
+// of the tilt. For a level one it is the papers' formula, heading = phi + sun's azimuth +- pi/2.
 // Errors: a white part that falls with the degree of polarization; slow ones, each a state (sky and
 // instrument; light from elsewhere, in proportion to its share; a constant), see
 // nav/polarization/options.h. The sky of the world is not Rayleigh's; under cloud it is off by

@@ -31,9 +31,7 @@ void Move(const Error& by, State& state) {
   TurnBlock(kVelocity, turn.toRotationMatrix(), state.P);
 }
 
-bool IsSound(const Covariance& P) {
-  return P.allFinite() && P.diagonal().minCoeff() >= 0.0;
-}
+bool IsSound(const Covariance& P) { return P.allFinite() && P.diagonal().minCoeff() >= 0.0; }
 
 bool Repair(Covariance& P) {
   if (!P.allFinite()) return false;

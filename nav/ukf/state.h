@@ -83,8 +83,8 @@ struct State {
   const double w = sign * q.w();
   const double s2 = q.vec().squaredNorm();
   if (s2 < 0.0025) {  // asin's series
-    const double ratio = 1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (15.0 / 336.0 +
-                                                                         s2 * 105.0 / 3456.0)));
+    const double ratio =
+        1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (15.0 / 336.0 + s2 * 105.0 / 3456.0)));
     return 2.0 * sign * ratio * q.vec();
   }
   const double s = std::sqrt(s2);

@@ -54,7 +54,8 @@ FlowInterval Timeline::IntervalBefore(std::size_t place, TimeNs length) const {
   const Sums start = SumsAt(begin);
   const double dt = ToSeconds(end.stamp - begin);
   return {.rate_rad_s = (end.turned_rad - start.turned_rad) / dt,
-          .gained_m_s = end.gained_m_s - (end.gained_m - start.gained_m) / dt};
+          .gained_m_s = end.gained_m_s - (end.gained_m - start.gained_m) / dt,
+          .duration_s = dt};
 }
 
 }  // namespace polnav::nav::ukf

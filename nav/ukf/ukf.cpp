@@ -19,10 +19,10 @@ using ukf::Step;
 constexpr double kFastest_rad_s = 100.0;
 constexpr double kHardest_m_s2 = 1000.0;
 
-constexpr double kGap = 2.5;         // intervals of the IMU; more is a gap
+constexpr double kGap = 2.5;                     // intervals of the IMU; more is a gap
 constexpr TimeNs kPatience = kNsPerSecond / 10;  // with an IMU that says nothing
 constexpr std::size_t kMostWaiting = 64;
-constexpr double kSeen_s = 1.0;      // the ground, or the robot is not tracked
+constexpr double kSeen_s = 1.0;  // the ground, or the robot is not tracked
 
 // Without an IMU it may do anything that a walking robot does: 0.3 rad/s and 1 m/s^2 that last for
 // a quarter of a second.
@@ -71,11 +71,9 @@ Report Ukf::Process(const Measurement& measurement) {
   if (const auto* imu = std::get_if<ImuSample>(&measurement)) {
     report.outcome = TakeImu(*imu, report);
   } else if (const auto* flow = std::get_if<OpticalFlowSample>(&measurement)) {
-    report.outcome =
-        IsUsable(*flow) ? Take(flow->stamp, *flow, report) : Outcome::kUnusable;
+    report.outcome = IsUsable(*flow) ? Take(flow->stamp, *flow, report) : Outcome::kUnusable;
   } else if (const auto* light = std::get_if<PolarizationSample>(&measurement); light && sky_) {
-    report.outcome =
-        IsUsable(*light) ? Take(light->stamp, *light, report) : Outcome::kUnusable;
+    report.outcome = IsUsable(*light) ? Take(light->stamp, *light, report) : Outcome::kUnusable;
   } else {
     return report;
   }
@@ -134,8 +132,7 @@ Outcome Ukf::TakeImu(const ImuSample& sample, Report& report) {
 }
 
 void Ukf::Begin(TimeNs stamp) {
-  timeline_.Start(
-      ukf::StartState(options_, imu_, ground_.calibration, start_, stamp));
+  timeline_.Start(ukf::StartState(options_, imu_, ground_.calibration, start_, stamp));
   answered_ = stamp;
 }
 
@@ -154,8 +151,8 @@ void Ukf::CoastTo(TimeNs stamp) {
   while (timeline_.Now().stamp < stamp) {
     const State& now = timeline_.Now();
     const Step step{.gyro_rad_s = now.gyro_bias,
-                    .accel_m_s2 = now.accel_bias + now.q_WI.conjugate() *
-                                                       Eigen::Vector3d(0.0, 0.0, kGravity_m_s2),
+                    .accel_m_s2 = now.accel_bias +
+                                  now.q_WI.conjugate() * Eigen::Vector3d(0.0, 0.0, kGravity_m_s2),
                     .blind = true};
     StepTo(std::min(stamp, now.stamp + length), step);
   }
@@ -266,8 +263,8 @@ Outcome Ukf::RunRange(const OpticalFlowSample& sample, Entry& entry, Report* rep
     report->failed_solves += done.repaired ? 1 : 0;
     report->innovations.push_back({sample.stamp, "range", done.nis, 1, done.gated});
     if (!done.gated) range_doubt_.Reset();
-    const auto doubt = done.gated ? range_doubt_.Add(sample.stamp, {residual(0), 0.0})
-                                  : std::nullopt;
+    const auto doubt =
+        done.gated ? range_doubt_.Add(sample.stamp, {residual(0), 0.0}) : std::nullopt;
     if (doubt) Widen(ukf::kTerrain, 1, *doubt, entry);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
@@ -298,8 +295,7 @@ Outcome Ukf::RunFlow(std::size_t place, const OpticalFlowSample& sample, Report*
       flow_doubt_.Reset();
       seen_ = sample.stamp;
     }
-    const auto doubt =
-        done.gated ? flow_doubt_.Add(sample.stamp, range * residual) : std::nullopt;
+    const auto doubt = done.gated ? flow_doubt_.Add(sample.stamp, range * residual) : std::nullopt;
     if (doubt) Widen(ukf::kVelocity, 2, *doubt, entry);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
@@ -314,8 +310,7 @@ Outcome Ukf::RunSky(const PolarizationSample& sample, Entry& entry, Report* repo
   const ukf::Expected<1> expected = ukf::ExpectSky(entry.after, q_IS_, reading);
   const double nominal = ukf::AxisOf(entry.after, q_IS_, sun_W, Error::Zero());
   using Scalar = Eigen::Matrix<double, 1, 1>;
-  const Scalar residual(
-      WrapHalfPi(WrapHalfPi(light->axis_rad - nominal) - expected.mean(0)));
+  const Scalar residual(WrapHalfPi(WrapHalfPi(light->axis_rad - nominal) - expected.mean(0)));
   const Scalar noise(reading.white_rad * reading.white_rad);
   const double sigma = std::sqrt(expected.covariance(0) + noise(0));
   const ukf::Correction done =
@@ -326,8 +321,7 @@ Outcome Ukf::RunSky(const PolarizationSample& sample, Entry& entry, Report* repo
     report->innovations.push_back({sample.stamp, "polarimeter", done.nis, 1, done.gated});
     report->sky.push_back({sample.stamp, residual(0), sigma, done.gated});
     if (!done.gated) sky_doubt_.Reset();
-    const auto doubt =
-        done.gated ? sky_doubt_.Add(sample.stamp, {residual(0), 0.0}) : std::nullopt;
+    const auto doubt = done.gated ? sky_doubt_.Add(sample.stamp, {residual(0), 0.0}) : std::nullopt;
     if (doubt) Widen(ukf::kTheta + 2, 1, *doubt, entry);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
