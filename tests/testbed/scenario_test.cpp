@@ -60,19 +60,24 @@ TEST(Scenario, RefusesAnEstimatorWithoutItsSensors) {
   EXPECT_EQ(ErrorWith("estimators.run=[compass_stokes]"),
             "--set estimators.run=[compass_stokes]: estimators.run: 'compass_stokes' needs a sky "
             "camera, but sensors.polarization_camera is off");
+  EXPECT_EQ(ErrorWith("estimators.run=[ukf_no_polarization]"),
+            "--set estimators.run=[ukf_no_polarization]: estimators.run: 'ukf_no_polarization' "
+            "needs optical flow, but sensors.optical_flow is off");
 }
 
 TEST(Scenario, RefusesEstimatorsThatItDoesNotKnow) {
   EXPECT_EQ(ErrorWith("estimators.run=[sterio]"),
             "--set estimators.run=[sterio]: estimators.run: 'sterio' is not one of: stereo, "
             "stereo_polarization, polarization, compass_lsq, compass_ransac_tls, compass_stokes, "
-            "compass_zenith; did you mean 'stereo'?");
+            "compass_zenith, ukf_paper, ukf_paper_no_polarization, ukf, ukf_no_polarization; did "
+            "you mean 'stereo'?");
   EXPECT_EQ(ErrorWith("estimators.run=[stereo, stereo]"),
             "--set estimators.run=[stereo, stereo]: estimators.run: 'stereo' is listed twice");
   EXPECT_EQ(ErrorWith("estimators.close_loops=[stereos]"),
             "--set estimators.close_loops=[stereos]: estimators.close_loops: 'stereos' is not one "
             "of: stereo, stereo_polarization, polarization, compass_lsq, compass_ransac_tls, "
-            "compass_stokes, compass_zenith; did you mean 'stereo'?");
+            "compass_stokes, compass_zenith, ukf_paper, ukf_paper_no_polarization, ukf, "
+            "ukf_no_polarization; did you mean 'stereo'?");
 }
 
 TEST(Scenario, RefusesLensesThatCannotBeRendered) {
@@ -114,7 +119,7 @@ TEST(Scenario, RefusesWhatCannotBeSimulated) {
             "--set sensors.imu.rate_hz=333: sensors.imu.rate_hz: 333 Hz does not fit whole steps "
             "of the simulation");
   EXPECT_EQ(ErrorOf("name: a\nvehicle:\n  car: {}\n  turntable: {}\n"),
-            "s.yaml:2: vehicle: 'car' and 'turntable' exclude each other");
+            "s.yaml:2: vehicle: 'car', 'turntable' and 'hexapod' exclude each other");
   EXPECT_EQ(ErrorOf("name: a\nsensors:\n  polarization_camera:\n    layout: 0,45/90\n"),
             "s.yaml:4: sensors.polarization_camera.layout: mosaic layout '0,45/90': expected each "
             "of 0, 45, 90, 135 once, first row / second row, such as 90,45/135,0");

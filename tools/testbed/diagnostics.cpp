@@ -72,12 +72,9 @@ void Diagnostics::AddInnovations(const nav::Report& report) {
 Json NisJson(const Diagnostics& diagnostics) {
   Json json = nullptr;
   for (const auto& [sensor, counts] : diagnostics.innovations) {
-    const double mean =
-        counts.count > 0 ? counts.nis_sum / static_cast<double>(counts.count) : 0.0;
-    json[sensor] = {{"mean", mean},
-                    {"dof", counts.dof},
-                    {"count", counts.count},
-                    {"gated", counts.gated}};
+    const double mean = counts.count > 0 ? counts.nis_sum / static_cast<double>(counts.count) : 0.0;
+    json[sensor] = {
+        {"mean", mean}, {"dof", counts.dof}, {"count", counts.count}, {"gated", counts.gated}};
   }
   return json;
 }

@@ -70,7 +70,7 @@ class Listener {
   PolarizationReadings readings_;
   std::optional<nav::StereoTracker> tracker_;
   std::optional<nav::StereoFeatures> newest_seen_;  // where no pictures are drawn
-  double front_end_ms_ = 0.0;  // of the newest pair of pictures
+  double front_end_ms_ = 0.0;                       // of the newest pair of pictures
   std::vector<RunningEstimator> estimators_;
   std::map<std::string, Sha256> hashes_;
   RunRecord record_;

@@ -37,6 +37,8 @@ TEST_F(Settings, EstimatorsFollowFromTheSensors) {
   info_.rig.polarimeter.reset();
   EXPECT_EQ(ReplaySettings(info_, {}).estimators.run, Names{"stereo"});
   info_.rig.stereo.reset();
+  EXPECT_EQ(ReplaySettings(info_, {}).estimators.run, Names{"ukf_no_polarization"});
+  info_.rig.optical_flow.reset();
   EXPECT_EQ(ReplaySettings(info_, {}).estimators.run, Names{"compass_stokes"});
   EXPECT_NE(ErrorOf("estimators.run=[stereo]").find("'stereo' needs cameras"), std::string::npos);
 }

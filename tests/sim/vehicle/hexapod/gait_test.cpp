@@ -29,19 +29,23 @@ TEST(Gait, StandsWhileNothingIsCommanded) {
 TEST(Gait, FeetOnTheGroundCarryTheBodyAsCommanded) {
   Gait gait(kHexapod);
   const WalkCommand command{{0.1, 0.02}, 0.3};
+  const auto is_down = [](const Eigen::Vector3d& foot) {
+    return foot.z() < -kHexapod.gait.body_height_m + kOnGround_m;
+  };
+  Feet before = gait.feet_B_m();
+  gait.Step(command, kStep_s);
   for (int k = 0; k < 2000; ++k) {
-    const Feet before = gait.feet_B_m();
+    const Feet now = gait.feet_B_m();
     gait.Step(command, kStep_s);
     EXPECT_GE(FeetDown(gait), 3);
     for (int i = 0; i < kLegs; ++i) {
-      const Eigen::Vector3d& foot = gait.feet_B_m()[i];
-      const bool down =
-          std::max(foot.z(), before[i].z()) < -kHexapod.gait.body_height_m + kOnGround_m;
-      if (!down) continue;
-      const Eigen::Vector3d moved = foot - before[i];
+      // A foot that is about to be raised rests for one step.
+      if (!is_down(before[i]) || !is_down(now[i]) || !is_down(gait.feet_B_m()[i])) continue;
+      const Eigen::Vector3d moved = now[i] - before[i];
       EXPECT_NEAR(moved.x(), -kStep_s * (0.1 - 0.3 * before[i].y()), 1e-12);
       EXPECT_NEAR(moved.y(), -kStep_s * (0.02 + 0.3 * before[i].x()), 1e-12);
     }
+    before = now;
   }
 }
 
