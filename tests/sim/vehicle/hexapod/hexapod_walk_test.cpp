@@ -83,8 +83,9 @@ TEST_F(HexapodWalk, FallsOverWhenPushedHardEnough) {
   EXPECT_GT(tilt_after(150.0), 90.0);
 }
 
-// Two tripods a cycle: the body heaves twice a cycle, and nothing between one hertz and the tenth
-// harmonic does so more.
+// Two tripods a cycle: the body heaves at the rate of the steps and its multiples (feet are put
+// down and lifted within each). What repeats only with the cycle is how unlike the tripods are;
+// between these lines there is next to nothing.
 TEST_F(HexapodWalk, StepsShowInTheVerticalAcceleration) {
   HexapodOptions options = Walking("straight");
   options.walk.length_m = 10.0;
@@ -107,9 +108,11 @@ TEST_F(HexapodWalk, StepsShowInTheVerticalAcceleration) {
   const double cycle_hz = 1.0 / options.gait.cycle_s;
   const double steps = amplitude(2.0 * cycle_hz);
   EXPECT_GT(steps, 1e-3);
-  for (int harmonic = 1; harmonic <= 10; ++harmonic) {
-    if (harmonic == 2) continue;
-    EXPECT_LT(amplitude(harmonic * cycle_hz), steps) << harmonic;
+  for (const double between : {1.5, 2.5, 3.5}) {
+    EXPECT_LT(amplitude(between * cycle_hz), 0.1 * steps) << between;
+  }
+  for (const double odd : {1.0, 3.0, 5.0}) {
+    EXPECT_LT(amplitude(odd * cycle_hz), 0.5 * steps) << odd;
   }
 }
 
