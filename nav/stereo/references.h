@@ -1,8 +1,9 @@
 // Is a track still where it began?
 //
 // A track that is followed from frame to frame wanders off its point a little each time. Held
-// against the picture where it began it does not, as long as the point still looks the same: until
-// it has come much nearer, or something else is in its place.
+// against the picture where it began, shifted and stretched (patch_align.h), it does not, as long
+// as the point still looks the same: until it has come much nearer, or something else is in its
+// place.
 #pragma once
 
 #include <cstdint>
