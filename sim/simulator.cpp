@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> ViewpointsOf(const VehicleOptions& vehicle, const T
   if (const auto place = PlaceOf(vehicle)) {
     const double above_m = vehicle.turntable ? vehicle.turntable->position_m.z() : 0.0;
     return {{place->x(), place->y(),
-             terrain.Height(place->x(), place->y()) + above_m + camera_height_m}};
+             above_m + (terrain.Height(place->x(), place->y()) + camera_height_m)}};
   }
   std::vector<Eigen::Vector3d> viewpoints;
   for (double s_m = 0.0; s_m < track.length_m(); s_m += kSpacing_m) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "nav/polarization/reading_errors.h"
 #include "nav/polarization/sky_heading.h"
 
 namespace polnav::nav {
@@ -11,9 +12,6 @@ namespace {
 
 // The first edge carries the slow part's whole information: worth a second of readings.
 constexpr int kFirstReadings = 20;
-constexpr double kReferenceDop = 0.5;  // at which options' white part is stated
-// A clear sky is at least this much of the Rayleigh pattern of clear_dop: haze and cirrus vary.
-constexpr double kLeastClear = 0.8;
 
 // Variance of a heading by that of the attitude.
 double HeadingVariance(const Eigen::Vector2d& by_tilt, const Eigen::Matrix3d& covariance) {
@@ -48,9 +46,7 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
   if (!heading) return false;
   const Eigen::Vector2d by_tilt = HeadingByTilt(q_WB * e_B, sun);
   const Eigen::Vector3d look_W = q_WB * (calibration_.T_BS.q * Eigen::Vector3d::UnitZ());
-  const double clear = kLeastClear * RayleighDop(look_W, sun, options_.clear_dop);
-  const double foreign = std::max(0.0, clear / reading.light.dop - 1.0);
-  const double white = DegToRad(options_.reading_sigma_deg) * kReferenceDop / reading.light.dop;
+  const auto [white, foreign] = ErrorsOf(reading.light, look_W, sun, options_);
   const double slow =
       DegToRad(std::hypot(options_.correlated_sigma_deg, options_.foreign_sigma_deg * foreign));
   const double innovation = WrapPi(*heading - CompassHeading(q_WB));

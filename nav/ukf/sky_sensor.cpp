@@ -1,28 +1,20 @@
 #include "nav/ukf/sky_sensor.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "nav/polarization/sky_heading.h"
+#include "nav/polarization/reading_errors.h"
 
 namespace polnav::nav::ukf {
-namespace {
-
-constexpr double kReferenceDop = 0.5;  // at which options' white part is stated
-constexpr double kLeastClear = 0.8;    // of the pattern of clear_dop: haze and cirrus vary
-
-}  // namespace
 
 SkyReading WeighReading(const PolarizedLight& light, const Eigen::Vector3d& sun_W,
                         const Eigen::Quaterniond& q_WS, const PolarizationOptions& options) {
   const Eigen::Vector3d look_W = q_WS * Eigen::Vector3d::UnitZ();
-  const double clear = kLeastClear * RayleighDop(look_W, sun_W, options.clear_dop);
-  const double foreign = std::max(0.0, clear / light.dop - 1.0);
+  const auto [white_rad, foreign_share] = ErrorsOf(light, look_W, sun_W, options);
   return {.light = light,
           .sun_W = sun_W,
-          .white_rad = DegToRad(options.reading_sigma_deg) * kReferenceDop / light.dop,
+          .white_rad = white_rad,
           .slow_rad = DegToRad(options.correlated_sigma_deg),
-          .foreign_rad = DegToRad(options.foreign_sigma_deg) * foreign};
+          .foreign_rad = DegToRad(options.foreign_sigma_deg) * foreign_share};
 }
 
 double AxisOf(const State& state, const Eigen::Quaterniond& q_IS, const Eigen::Vector3d& sun_W,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "nav/inertial/options.h"
+#include "nav/stereo/reprojection.h"
 
 namespace polnav::nav::ukf {
 namespace {
@@ -17,12 +18,6 @@ void Check(const char* name, double sigma) {
   if (sigma >= 0.0 && std::isfinite(sigma)) return;
   throw std::invalid_argument(std::string("Ukf: ") + name + " is " + std::to_string(sigma) +
                               ", expected a number not below 0");
-}
-
-Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
 }
 
 }  // namespace

@@ -260,12 +260,8 @@ Outcome Ukf::RunRange(const OpticalFlowSample& sample, Entry& entry, Report* rep
       ukf::Correct<1>(expected, residual, noise, options_.gate_sigmas, entry.after);
   if (!done.usable) return Outcome::kUnusable;
   if (report) {
-    report->failed_solves += done.repaired ? 1 : 0;
-    report->innovations.push_back({sample.stamp, "range", done.nis, 1, done.gated});
-    if (!done.gated) range_doubt_.Reset();
-    const auto doubt =
-        done.gated ? range_doubt_.Add(sample.stamp, {residual(0), 0.0}) : std::nullopt;
-    if (doubt) Widen(ukf::kTerrain, 1, *doubt, entry);
+    Tell({"range", 1, {residual(0), 0.0}, &range_doubt_, ukf::kTerrain, 1}, sample.stamp, done,
+         entry, *report);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
 }
@@ -289,14 +285,9 @@ Outcome Ukf::RunFlow(std::size_t place, const OpticalFlowSample& sample, Report*
       ukf::Correct<2>(expected, residual, noise, options_.gate_sigmas, entry.after);
   if (!done.usable) return Outcome::kUnusable;
   if (report) {
-    report->failed_solves += done.repaired ? 1 : 0;
-    report->innovations.push_back({sample.stamp, "optical_flow", done.nis, 2, done.gated});
-    if (!done.gated) {
-      flow_doubt_.Reset();
-      seen_ = sample.stamp;
-    }
-    const auto doubt = done.gated ? flow_doubt_.Add(sample.stamp, range * residual) : std::nullopt;
-    if (doubt) Widen(ukf::kVelocity, 2, *doubt, entry);
+    if (!done.gated) seen_ = sample.stamp;
+    Tell({"optical_flow", 2, range * residual, &flow_doubt_, ukf::kVelocity, 2}, sample.stamp, done,
+         entry, *report);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
 }
@@ -317,20 +308,26 @@ Outcome Ukf::RunSky(const PolarizationSample& sample, Entry& entry, Report* repo
       ukf::Correct<1>(expected, residual, noise, options_.gate_sigmas, entry.after);
   if (!done.usable) return Outcome::kUnusable;
   if (report) {
-    report->failed_solves += done.repaired ? 1 : 0;
-    report->innovations.push_back({sample.stamp, "polarimeter", done.nis, 1, done.gated});
     report->sky.push_back({sample.stamp, residual(0), sigma, done.gated});
-    if (!done.gated) sky_doubt_.Reset();
-    const auto doubt = done.gated ? sky_doubt_.Add(sample.stamp, {residual(0), 0.0}) : std::nullopt;
-    if (doubt) Widen(ukf::kTheta + 2, 1, *doubt, entry);
+    Tell({"polarimeter", 1, {residual(0), 0.0}, &sky_doubt_, ukf::kTheta + 2, 1}, sample.stamp,
+         done, entry, *report);
   }
   return done.gated ? Outcome::kGated : Outcome::kUsed;
 }
 
-// After a refused reading: what follows, and what is done again, starts from less certainty.
-void Ukf::Widen(Eigen::Index at, int count, double variance, Entry& entry) {
-  entry.widened.segment(at, count).array() += variance;
-  entry.after.P.diagonal().segment(at, count).array() += variance;
+// Where refused readings agree, what follows, and what is done again, starts from less certainty.
+void Ukf::Tell(const Reading& reading, TimeNs stamp, const ukf::Correction& done, Entry& entry,
+               Report& report) {
+  report.failed_solves += done.repaired ? 1 : 0;
+  report.innovations.push_back({stamp, reading.sensor, done.nis, reading.dof, done.gated});
+  if (!done.gated) {
+    reading.doubt->Reset();
+    return;
+  }
+  const auto doubt = reading.doubt->Add(stamp, reading.residual);
+  if (!doubt) return;
+  entry.widened.segment(reading.at, reading.count).array() += *doubt;
+  entry.after.P.diagonal().segment(reading.at, reading.count).array() += *doubt;
 }
 
 }  // namespace polnav::nav

@@ -51,6 +51,16 @@ class Ukf {
     What what;
   };
 
+  // For Tell.
+  struct Reading {
+    std::string_view sensor;
+    int dof;
+    Eigen::Vector2d residual;  // in the unit of what is doubted
+    ukf::Doubt* doubt;
+    Eigen::Index at;  // the errors that become less certain
+    int count;
+  };
+
   [[nodiscard]] Outcome TakeImu(const ImuSample& sample, Report& report);
   [[nodiscard]] Outcome Take(TimeNs stamp, const What& what, Report& report);
   [[nodiscard]] bool IsUsable(const OpticalFlowSample& sample) const;
@@ -66,7 +76,9 @@ class Ukf {
   Outcome RunFlow(std::size_t place, const OpticalFlowSample& sample, Report* report);
   Outcome RunRange(const OpticalFlowSample& sample, ukf::Entry& entry, Report* report);
   Outcome RunSky(const PolarizationSample& sample, ukf::Entry& entry, Report* report);
-  void Widen(Eigen::Index at, int count, double variance, ukf::Entry& entry);
+  // What became of a reading goes into the report.
+  void Tell(const Reading& reading, TimeNs stamp, const ukf::Correction& done, ukf::Entry& entry,
+            Report& report);
 
   UkfOptions options_;
   ImuCalibration imu_;

@@ -159,7 +159,7 @@ PictureLight Renderer::Impl::LightOf(const RenderRequest& request, const nav::Po
           .sun_share = static_cast<float>(sun_share),
           .extinction_1_m = static_cast<float>(FogExtinction(request.visibility_m)),
           .airlight = static_cast<float>(FogRadiance(fallen, request.visibility_m)),
-          .grain = GrainSeenFrom(request.T_WC.p, close_up.value_or(CloseUp{.contrast = 0.0}))};
+          .grain = close_up ? GrainSeenFrom(request.T_WC.p, *close_up) : GrainAtEye{}};
 }
 
 void Renderer::Impl::DrawMask() {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "sim/sensors/rotation.h"
+#include "sim/vehicle/central_truth.h"
 
 namespace polnav::sim {
 namespace {
@@ -21,7 +21,7 @@ Car::Car(const CarOptions& options, const Track& track, const Terrain& terrain, 
   Settle();
   poses_.fill(chassis_.T_WB());
   RunPhysics();
-  UpdateTruth();
+  truth_ = CentralTruth(truth_.stamp, poses_, Chassis::kStep_s);
 }
 
 // The springs ring down and the tyres take up the slope, with the brake on.
@@ -42,17 +42,10 @@ void Car::RunPhysics() {
   poses_[2] = chassis_.T_WB();
 }
 
-void Car::UpdateTruth() {
-  constexpr double kSpan_s = 2.0 * Chassis::kStep_s;
-  truth_.T_WB = poses_[1];
-  truth_.v_WB_m_s = (poses_[2].p - poses_[0].p) / kSpan_s;
-  truth_.w_WB_B_rad_s = RotationVector(poses_[0].q.conjugate() * poses_[2].q) / kSpan_s;
-}
-
 void Car::Step() {
   truth_.stamp += kStep;
   RunPhysics();
-  UpdateTruth();
+  truth_ = CentralTruth(truth_.stamp, poses_, Chassis::kStep_s);
 }
 
 }  // namespace polnav::sim

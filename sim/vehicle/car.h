@@ -35,7 +35,6 @@ class Car {
  private:
   void Settle();
   void RunPhysics();
-  void UpdateTruth();
 
   CarOptions options_;
   Chassis chassis_;

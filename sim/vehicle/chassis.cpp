@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/vehicle/bullet.h"
 #include "sim/vehicle/raycast_car.h"
 
 namespace polnav::sim {
@@ -10,8 +11,6 @@ namespace {
 
 constexpr double kWheelRadius_m = 0.30;
 constexpr double kBumpTravel_m = 0.25;  // from rest until the strut bottoms out
-
-Eigen::Vector3d FromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Radii of gyration of a passenger car over its track width (roll) and wheelbase (pitch, yaw).
 btVector3 Inertia(const CarOptions& options) {
@@ -47,14 +46,6 @@ btTransform StartPose(const CarOptions& options, const Terrain& terrain,
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), {start_m.x(), start_m.y(), height});
 }
 
-// The car never touches anything: a small pool saves megabytes a world.
-btDefaultCollisionConstructionInfo SmallPools() {
-  btDefaultCollisionConstructionInfo info;
-  info.m_defaultMaxPersistentManifoldPoolSize = 16;
-  info.m_defaultMaxCollisionAlgorithmPoolSize = 16;
-  return info;
-}
-
 }  // namespace
 
 struct Chassis::Impl {
@@ -85,7 +76,7 @@ Chassis::Impl::Impl(const CarOptions& car_options, const Terrain& terrain,
                     const Eigen::Vector2d& start_m, double heading_rad)
     : options(car_options),
       tuning(Tuning(options)),
-      configuration(SmallPools()),
+      configuration(SmallPools(16)),
       dispatcher(&configuration),
       broadphase(4),
       world(&dispatcher, &broadphase, &solver, &configuration),

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/random.h"
+#include "sim/vehicle/approach.h"
 
 namespace polnav::sim {
 namespace {
@@ -26,10 +27,6 @@ constexpr double kSpeedIntegral_1_s2 = 0.4;
 constexpr double kStopSpeed_m_s = 0.05;
 constexpr double kBrakeHold_g = 0.5;
 constexpr double kPedalRate_g_s = 2.0;  // force over weight, per second
-
-double Approach(double from, double to, double most) {
-  return from + std::clamp(to - from, -most, most);
-}
 
 }  // namespace
 

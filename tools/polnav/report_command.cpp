@@ -29,21 +29,9 @@ void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& w
   }
 }
 
-void CheckSchema(SQLite::Database& db, const fs::path& path) {
-  if (db.execAndGet("PRAGMA application_id").getInt() != kStudyApplicationId) {
-    throw InputError(path.string(), 0, "", "is not the result file of a study");
-  }
-  const int version = db.execAndGet("PRAGMA user_version").getInt();
-  if (version > kStudySchemaVersion) {
-    throw InputError(path.string(), 0, "",
-                     fmt::format("was written by a newer polnav (schema {}; this one knows {})",
-                                 version, kStudySchemaVersion));
-  }
-}
-
 int ReportStudy(const ReportArguments& arguments, const fs::path& path, const Console& console) {
   SQLite::Database db(path.string(), SQLite::OPEN_READONLY, 10'000);
-  CheckSchema(db, path);
+  CheckStudySchema(db, path);
   // What is read is one state of the file, also while the study goes on.
   SQLite::Transaction snapshot(db);
   const StudyTable table(db);

@@ -40,7 +40,10 @@ std::string HtmlReport(const ReportInput& input) {
           TimingAndStreamSections(input) + "\n" + AgainSection(input);
   html.append("\n</main>\n<script>").append(ChartJs()).append("</script>\n<script>const run = ");
   html += ScriptSafe(ChartData(input.record, input.scenario));
-  return html.append(";\n").append(ReportJs()).append("</script>\n</body></html>\n");
+  return html.append(";\n")
+      .append(ChartsJs())
+      .append(ReportJs())
+      .append("</script>\n</body></html>\n");
 }
 
 }  // namespace polnav::testbed

@@ -135,6 +135,27 @@ const EstimatorInfo& FindEstimator(const YamlDocument& document, const std::stri
                      nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
 }
 
+void CheckSensors(const YamlDocument& document, const EstimatorInfo& info,
+                  const sim::SensorOptions& sensors) {
+  struct Need {
+    bool missing;
+    const char* what;
+    const char* key;
+  };
+  for (const auto& [missing, what, key] : {
+           Need{info.needs_stereo && !sensors.stereo, "cameras", "stereo"},
+           Need{info.needs_polarimeter && !sensors.polarimeter, "a polarimeter", "polarimeter"},
+           Need{info.needs_imu && !sensors.imu, "an IMU", "imu"},
+           Need{info.needs_optical_flow && !sensors.optical_flow, "optical flow", "optical_flow"},
+           Need{info.needs_polarization_camera && !sensors.polarization_camera, "a sky camera",
+                "polarization_camera"},
+       }) {
+    if (!missing) continue;
+    FailAt(document, "estimators.run",
+           fmt::format("'{}' needs {}, but sensors.{} is off", info.name, what, key));
+  }
+}
+
 void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
   std::set<std::string> seen;
   for (const std::string& name : scenario.estimators.run) {
@@ -142,26 +163,7 @@ void CheckEstimators(const YamlDocument& document, const Scenario& scenario) {
     if (!seen.insert(name).second) {
       FailAt(document, "estimators.run", fmt::format("'{}' is listed twice", name));
     }
-    if (info.needs_stereo && !scenario.sensors.stereo) {
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' needs cameras, but sensors.stereo is off", name));
-    }
-    if (info.needs_polarimeter && !scenario.sensors.polarimeter) {
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' needs a polarimeter, but sensors.polarimeter is off", name));
-    }
-    if (info.needs_imu && !scenario.sensors.imu) {
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' needs an IMU, but sensors.imu is off", name));
-    }
-    if (info.needs_optical_flow && !scenario.sensors.optical_flow) {
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' needs optical flow, but sensors.optical_flow is off", name));
-    }
-    if (info.needs_polarization_camera && !scenario.sensors.polarization_camera) {
-      FailAt(document, "estimators.run",
-             fmt::format("'{}' needs a sky camera, but sensors.polarization_camera is off", name));
-    }
+    CheckSensors(document, info, scenario.sensors);
   }
   for (const std::string& name : scenario.estimators.close_loops) {
     (void)FindEstimator(document, "estimators.close_loops", name);

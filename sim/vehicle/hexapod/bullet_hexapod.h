@@ -15,13 +15,11 @@
 #include <memory>
 #include <vector>
 
+#include "sim/vehicle/bullet.h"
 #include "sim/vehicle/hexapod/hexapod_options.h"
 #include "sim/vehicle/hexapod/leg_kinematics.h"
 
 namespace polnav::sim {
-
-inline btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-inline Eigen::Vector3d FromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Links leg by leg: coxa, femur, tibia. Angles as in leg_kinematics.h.
 inline constexpr int kJoints = kLegs * kJointsOfLeg;

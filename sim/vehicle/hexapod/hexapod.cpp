@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "sim/sensors/rotation.h"
+#include "sim/vehicle/central_truth.h"
 
 namespace polnav::sim {
 namespace {
@@ -41,7 +41,7 @@ Hexapod::Hexapod(const HexapodOptions& options, const Terrain& terrain, std::uin
   Settle();
   poses_.fill(body_.T_WB());
   RunPhysics();
-  UpdateTruth();
+  truth_ = CentralTruth(truth_.stamp, poses_, nav::ToSeconds(kStep));
 }
 
 // The servos take up the weight.
@@ -71,17 +71,10 @@ void Hexapod::RunPhysics() {
   poses_[2] = body_.T_WB();
 }
 
-void Hexapod::UpdateTruth() {
-  constexpr double kSpan_s = 2.0 * static_cast<double>(kStep) * 1e-9;
-  truth_.T_WB = poses_[1];
-  truth_.v_WB_m_s = (poses_[2].p - poses_[0].p) / kSpan_s;
-  truth_.w_WB_B_rad_s = RotationVector(poses_[0].q.conjugate() * poses_[2].q) / kSpan_s;
-}
-
 void Hexapod::Step() {
   truth_.stamp += kStep;
   RunPhysics();
-  UpdateTruth();
+  truth_ = CentralTruth(truth_.stamp, poses_, nav::ToSeconds(kStep));
 }
 
 }  // namespace polnav::sim

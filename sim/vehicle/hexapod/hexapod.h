@@ -36,7 +36,6 @@ class Hexapod {
  private:
   void Settle();
   void RunPhysics();
-  void UpdateTruth();
   void CommandServos();
 
   HexapodOptions options_;

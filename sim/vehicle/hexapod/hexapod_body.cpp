@@ -2,21 +2,11 @@
 
 #include <algorithm>
 
+#include "sim/sensors/imu.h"
 #include "sim/vehicle/hexapod/bullet_hexapod.h"
 #include "sim/vehicle/hexapod/servo.h"
 
 namespace polnav::sim {
-namespace {
-
-btDefaultCollisionConstructionInfo SmallPools() {
-  btDefaultCollisionConstructionInfo info;
-  info.m_defaultMaxPersistentManifoldPoolSize = 64;
-  info.m_defaultMaxCollisionAlgorithmPoolSize = 64;
-  return info;
-}
-
-}  // namespace
-
 struct HexapodBody::Impl {
   Impl(const HexapodOptions& hexapod_options, const Terrain& ground);
   ~Impl();
@@ -45,7 +35,7 @@ struct HexapodBody::Impl {
 HexapodBody::Impl::Impl(const HexapodOptions& hexapod_options, const Terrain& ground)
     : options(hexapod_options),
       terrain(&ground),
-      configuration(SmallPools()),
+      configuration(SmallPools(64)),
       dispatcher(&configuration),
       broadphase(64),
       world(&dispatcher, &broadphase, &solver, &configuration),

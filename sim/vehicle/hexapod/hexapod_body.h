@@ -27,7 +27,6 @@ class HexapodBody {
  public:
   static constexpr nav::TimeNs kStep = 1'000'000;
   static constexpr double kStep_s = 0.001;
-  static constexpr double kGravity_m_s2 = 9.80665;
 
   // Stands at its start with its joints at these angles and its feet just on the ground. Keeps a
   // reference to the terrain: it must outlive the body.

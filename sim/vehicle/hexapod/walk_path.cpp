@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/random.h"
+#include "sim/vehicle/approach.h"
 
 namespace polnav::sim {
 namespace {
@@ -18,10 +19,6 @@ constexpr double kTurned_rad = 0.02;
 constexpr int kWaves = 6;
 constexpr double kShortest_s = 3.0;
 constexpr double kLongest_s = 20.0;
-
-double Approach(double from, double to, double most) {
-  return from + std::clamp(to - from, -most, most);
-}
 
 double CourseOf(const nav::Pose& T_WB) {
   const Eigen::Vector3d x_W = T_WB.q * Eigen::Vector3d::UnitX();

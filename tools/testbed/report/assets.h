@@ -7,6 +7,7 @@ namespace polnav::testbed {
 
 [[nodiscard]] std::string_view ChartJs();
 [[nodiscard]] std::string_view ReportCss();
+[[nodiscard]] std::string_view ChartsJs();  // before either of the two scripts below
 [[nodiscard]] std::string_view ReportJs();
 [[nodiscard]] std::string_view StudyJs();  // of a study's report
 

@@ -1,23 +1,9 @@
 // Draws the charts of a run from the object `run` that the report carries.
 "use strict";
 (function () {
-  const charts = [];
-  const color = (name) =>
-    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const faint = (name, alpha) =>
-    color(name) + Math.round(255 * alpha).toString(16).padStart(2, "0");
+  const { color, faint, points, axis, show } = shared;
   const wholeRun = { min: 0, max: run.end_s };
   const slot = (i) => "--c" + (i % 4);
-  const points = (x, y) => x.map((t, i) => ({ x: t, y: y[i] }));
-
-  function axis(title, limits) {
-    return Object.assign({
-      type: "linear",
-      title: { display: true, text: title, color: color("--soft") },
-      ticks: { color: color("--soft"), maxRotation: 0, includeBounds: false },
-      grid: { color: color("--grid") },
-    }, limits);
-  }
 
   function line(label, data, stroke, extra) {
     return Object.assign({
@@ -27,27 +13,9 @@
   }
 
   function draw(id, datasets, x, y, extra) {
-    const canvas = document.getElementById(id);
-    if (!canvas) return;
-    charts.push(new Chart(canvas, {
-      type: "line",
-      data: { datasets },
-      options: {
-        animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
-        interaction: { mode: "nearest", intersect: false },
-        scales: Object.assign({ x: axis(x, extra && extra.x), y: axis(y, extra && extra.y) },
-                              extra && extra.right && { right: extra.right }),
-        plugins: {
-          legend: {
-            labels: {
-              color: color("--ink"), boxWidth: 14, boxHeight: 3,
-              filter: (item, data) => !data.datasets[item.datasetIndex].band,
-            },
-          },
-        },
-      },
-      plugins: (extra && extra.plugins) || [],
-    }));
+    const scales = Object.assign({ x: axis(x, extra && extra.x), y: axis(y, extra && extra.y) },
+                                 extra && extra.right && { right: extra.right });
+    shared.draw(id, datasets, scales, extra && extra.plugins);
   }
 
   // One metre is as long on both axes.
@@ -213,7 +181,6 @@
   }
 
   function drawAll() {
-    charts.splice(0).forEach((chart) => chart.destroy());
     drawTrajectory();
     drawHeading();
     drawPosition();
@@ -224,6 +191,5 @@
     drawVision();
   }
 
-  drawAll();
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawAll);
+  show(drawAll);
 })();

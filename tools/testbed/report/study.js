@@ -1,26 +1,12 @@
 // Draws the charts of a study from the object `study` that the report carries.
 "use strict";
 (function () {
-  const charts = [];
-  const color = (name) =>
-    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const faint = (name, alpha) =>
-    color(name) + Math.round(255 * alpha).toString(16).padStart(2, "0");
+  const { color, faint, points, axis, draw, show } = shared;
   // The same colour in all charts.
   const names = [...new Set(study.cases.flatMap((c) =>
     [...c.cdfs, ...c.series, ...c.scatters].flatMap((k) => k.lines.map((l) => l.name))))];
   const slot = (name) => "--c" + (names.indexOf(name) % 4);
   const dash = (name) => [[], [6, 4], [2, 3], [8, 3, 2, 3]][Math.floor(names.indexOf(name) / 4) % 4];
-  const points = (x, y) => x.map((t, i) => ({ x: t, y: y[i] }));
-
-  function axis(title, limits) {
-    return Object.assign({
-      type: "linear",
-      title: { display: true, text: title, color: color("--soft") },
-      ticks: { color: color("--soft"), maxRotation: 0, includeBounds: false },
-      grid: { color: color("--grid") },
-    }, limits);
-  }
 
   function line(name, data, extra) {
     return Object.assign({
@@ -38,28 +24,6 @@
             line(name, points(x, low), side)];
   }
 
-  function draw(id, datasets, x, y) {
-    const canvas = document.getElementById(id);
-    if (!canvas) return;
-    charts.push(new Chart(canvas, {
-      type: "line",
-      data: { datasets },
-      options: {
-        animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
-        interaction: { mode: "nearest", intersect: false },
-        scales: { x, y },
-        plugins: {
-          legend: {
-            labels: {
-              color: color("--ink"), boxWidth: 14, boxHeight: 3,
-              filter: (item, data) => !data.datasets[item.datasetIndex].band,
-            },
-          },
-        },
-      },
-    }));
-  }
-
   function drawCdf(chart) {
     const sets = [];
     for (const l of chart.lines) {
@@ -68,7 +32,7 @@
       sets.push(...band(l.name, l.x, l.y.map((y) => Math.min(1, y + l.band)),
                         l.y.map((y) => Math.max(0, y - l.band)), stepped));
     }
-    draw(chart.id, sets, axis(chart.metric), axis("share of the trials", { min: 0, max: 1 }));
+    draw(chart.id, sets, { x: axis(chart.metric), y: axis("share of the trials", { min: 0, max: 1 }) });
   }
 
   function drawSeries(chart) {
@@ -77,7 +41,7 @@
       sets.push(line(l.name, points(l.t, l.median)));
       sets.push(...band(l.name, l.t, l.high, l.low));
     }
-    draw(chart.id, sets, axis("time [s]"), axis(chart.unit, { beginAtZero: true }));
+    draw(chart.id, sets, { x: axis("time [s]"), y: axis(chart.unit, { beginAtZero: true }) });
   }
 
   function drawScatter(chart) {
@@ -87,11 +51,11 @@
     const xs = chart.lines.flatMap((l) => l.x);
     const low = Math.min(...xs), high = Math.max(...xs);
     const type = low > 0 && high > 20 * low ? "logarithmic" : "linear";
-    draw(chart.id, sets, axis(chart.x, { type }), axis(chart.y, { beginAtZero: true }));
+    draw(chart.id, sets,
+         { x: axis(chart.x, { type }), y: axis(chart.y, { beginAtZero: true }) });
   }
 
   function drawAll() {
-    charts.splice(0).forEach((chart) => chart.destroy());
     for (const c of study.cases) {
       c.cdfs.forEach(drawCdf);
       c.series.forEach(drawSeries);
@@ -99,6 +63,5 @@
     }
   }
 
-  drawAll();
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawAll);
+  show(drawAll);
 })();

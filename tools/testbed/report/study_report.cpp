@@ -55,7 +55,10 @@ std::string StudyHtml(const StudyTable& table, const Json& aggregate) {
           StudyFailureSection(table);
   html.append("\n</main>\n<script>").append(ChartJs()).append("</script>\n<script>const study = ");
   html += ScriptSafe(data);
-  return html.append(";\n").append(StudyJs()).append("</script>\n</body></html>\n");
+  return html.append(";\n")
+      .append(ChartsJs())
+      .append(StudyJs())
+      .append("</script>\n</body></html>\n");
 }
 
 }  // namespace polnav::testbed

@@ -1,6 +1,10 @@
 #include "tools/testbed/study/schema.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "tools/testbed/input_error.h"
 
 namespace polnav::testbed {
 
@@ -43,6 +47,19 @@ CREATE TABLE series (
   PRIMARY KEY (estimator, trial)
 ) WITHOUT ROWID;
 )sql";
+
+void CheckStudySchema(SQLite::Database& database, const std::filesystem::path& path,
+                      const std::string& remedy) {
+  if (database.execAndGet("PRAGMA application_id").getInt() != kStudyApplicationId) {
+    throw InputError(path.string(), 0, "", "is not the result file of a study");
+  }
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  if (version > kStudySchemaVersion) {
+    throw InputError(path.string(), 0, "",
+                     fmt::format("was written by a newer polnav (schema {}; this one knows {}){}",
+                                 version, kStudySchemaVersion, remedy));
+  }
+}
 
 std::optional<Outcome> ParseOutcome(std::string_view name) {
   const auto* const found = std::find(kOutcomeNames.begin(), kOutcomeNames.end(), name);

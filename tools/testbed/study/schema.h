@@ -5,7 +5,10 @@
 // dotted path ("heading_deg.rmse"): columns appear when a value of that name first does.
 #pragma once
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +22,11 @@ inline constexpr int kStudySchemaVersion = 1;
 
 // The tables of an empty study.
 extern const char* const kStudySchema;
+
+// Throws InputError when the file is no study's or a newer polnav's; `remedy` ends the latter's
+// message.
+void CheckStudySchema(SQLite::Database& database, const std::filesystem::path& path,
+                      const std::string& remedy = "");
 
 // How a trial ended.
 enum class Outcome {

@@ -132,16 +132,7 @@ bool StudyDatabase::IsEmpty() const {
 }
 
 void StudyDatabase::CheckSchema() const {
-  if (db_->execAndGet("PRAGMA application_id").getInt() != kStudyApplicationId) {
-    throw InputError(path_.string(), 0, "", "is not the result file of a study");
-  }
-  const int version = db_->execAndGet("PRAGMA user_version").getInt();
-  if (version > kStudySchemaVersion) {
-    throw InputError(path_.string(), 0, "",
-                     fmt::format("was written by a newer polnav (schema {}; this one knows {}): "
-                                 "use that one, or give another file with --out",
-                                 version, kStudySchemaVersion));
-  }
+  CheckStudySchema(*db_, path_, ": use that one, or give another file with --out");
 }
 
 void StudyDatabase::CheckIdentity(const StudyPlan& plan) const {
