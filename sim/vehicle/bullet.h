@@ -3,8 +3,7 @@
 // Only the vehicles' own sources include this file: Bullet's headers stay out of the rest.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <LinearMath/btVector3.h>
+#include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Core>
 
