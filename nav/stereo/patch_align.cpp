@@ -1,10 +1,12 @@
 #include "nav/stereo/patch_align.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace polnav::nav {
 namespace {
+
+using Vector8f = Eigen::Matrix<float, 8, 1>;
+using Matrix8f = Eigen::Matrix<float, 8, 8>;
 
 constexpr int kMaxIterations = 15;
 constexpr float kEnough_px = 0.003F;
@@ -17,56 +19,58 @@ constexpr float kRidge = kGreySigma * kGreySigma / (kStretchSigma * kStretchSigm
 constexpr float kFarthest_px = 4.0F;
 constexpr float kMostStretch = 1.0F;
 
+// The smaller eigenvalue of the slopes' products.
+float Contrast(const Matrix8f& products) {
+  const float half_sum = 0.5F * (products(0, 0) + products(1, 1));
+  const float half_difference = 0.5F * (products(0, 0) - products(1, 1));
+  return half_sum - std::hypot(half_difference, products(0, 1));
+}
+
 }  // namespace
 
-// Unknowns: place (2), stretch row by row (4), gain, offset.
-bool PatchAligner::Prepare(const cv::Mat& from, const cv::Point2f& middle) {
-  if (!ReadPatch(from, middle, half_ + 1, wide_)) return false;
-  const int side = 2 * half_ + 1;
+std::optional<PatchTemplate> CutTemplate(const cv::Mat& image, const cv::Point2f& middle,
+                                         int half) {
+  Patch wide_patch;
+  if (!ReadPatch(image, middle, half + 1, wide_patch)) return std::nullopt;
+  const int side = 2 * half + 1;
   const int wide = side + 2;
-  template_.resize(static_cast<std::size_t>(side * side));
-  rows_.resize(8, side * side);
-  float mean = 0.0F;
+  PatchTemplate patch{.half = half};
+  patch.rows.resize(8, side * side);
   int k = 0;
-  for (int j = -half_; j <= half_; ++j) {
-    const float* here = wide_.data() + (j + half_ + 1) * wide + 1;
-    for (int i = -half_; i <= half_; ++i, ++k, ++here) {
+  for (int j = -half; j <= half; ++j) {
+    const float* here = wide_patch.data() + (j + half + 1) * wide + 1;
+    for (int i = -half; i <= half; ++i, ++k, ++here) {
       const float x = 0.5F * (here[1] - here[-1]);
       const float y = 0.5F * (here[wide] - here[-wide]);
       const auto fi = static_cast<float>(i);
       const auto fj = static_cast<float>(j);
-      rows_.col(k) << x, y, x * fi, x * fj, y * fi, y * fj, here[0], 1.0F;
-      template_[static_cast<std::size_t>(k)] = here[0];
-      mean += here[0];
+      patch.rows.col(k) << x, y, x * fi, x * fj, y * fi, y * fj, here[0], 1.0F;
     }
   }
-  rows_.row(6).array() -= mean / static_cast<float>(k);
-  information_.noalias() = rows_ * rows_.transpose();
-  // Less than a grey value a pixel, whichever way it is looked at: noise.
-  const float half_sum = 0.5F * (information_(0, 0) + information_(1, 1));
-  const float half_difference = 0.5F * (information_(0, 0) - information_(1, 1));
-  if (half_sum - std::hypot(half_difference, information_(0, 1)) < static_cast<float>(k)) {
-    return false;
-  }
-  information_.diagonal().segment<4>(2).array() += kRidge;
-  return true;
+  patch.rows.row(6).array() -= patch.rows.row(6).mean();
+  Matrix8f products = patch.rows * patch.rows.transpose();
+  // Less than a grey value a pixel is noise.
+  if (Contrast(products) < static_cast<float>(k)) return std::nullopt;
+  patch.by_gain = products.col(6);
+  patch.by_offset = products.col(7);
+  products.diagonal().segment<4>(2).array() += kRidge;
+  patch.information.compute(products);
+  return patch;
 }
 
-std::optional<PatchPlace> PatchAligner::Align(const cv::Mat& from, const cv::Point2f& middle,
-                                              const cv::Mat& to, const PatchPlace& guess) {
-  if (!Prepare(from, middle)) return std::nullopt;
-  const Eigen::LDLT<Matrix8f> solver(information_);
+std::optional<PatchPlace> AlignTemplate(const PatchTemplate& patch, const cv::Mat& image,
+                                        const PatchPlace& guess, float least_correlation) {
   PatchPlace place = guess;
   float gain = 1.0F;
   float offset = 0.0F;
+  Patch seen_patch;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!ReadWarped(to, place.at, place.stretch, half_, seen_)) return std::nullopt;
-    const Eigen::Map<const Eigen::RowVectorXf> seen(seen_.data(), std::ssize(seen_));
+    if (!ReadWarped(image, place.at, place.stretch, patch.half, seen_patch)) return std::nullopt;
+    const Eigen::Map<const Eigen::VectorXf> seen(seen_patch.data(), std::ssize(seen_patch));
     if (iteration == 0) offset = seen.mean();
-    const Eigen::RowVectorXf residual = (seen - gain * rows_.row(6)).array() - offset;
-    Vector8f g = rows_ * residual.transpose();
+    Vector8f g = patch.rows * seen - gain * patch.by_gain - offset * patch.by_offset;
     for (int i = 0; i < 4; ++i) g(2 + i) += kRidge * (place.stretch.val[i] - guess.stretch.val[i]);
-    const Vector8f step = solver.solve(g);
+    const Vector8f step = patch.information.solve(g);
     // What moves the template one way moves the place the other.
     const cv::Matx22f back = cv::Matx22f(1.0F + step(2), step(3), step(4), 1.0F + step(5)).inv();
     place.stretch = place.stretch * back;
@@ -80,8 +84,10 @@ std::optional<PatchPlace> PatchAligner::Align(const cv::Mat& from, const cv::Poi
     if (lost) return std::nullopt;
     if (std::hypot(step(0), step(1)) < kEnough_px) break;
   }
-  if (!(Correlation(template_, seen_) > least_correlation_)) return std::nullopt;
-  return place;
+  const Eigen::Map<const Eigen::VectorXf> seen(seen_patch.data(), std::ssize(seen_patch));
+  const float contrast = (seen.array() - seen.mean()).matrix().norm() * std::sqrt(patch.by_gain(6));
+  const float alike = patch.rows.row(6).dot(seen);
+  return alike > least_correlation * contrast ? std::optional(place) : std::nullopt;
 }
 
 }  // namespace polnav::nav

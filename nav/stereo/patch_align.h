@@ -8,6 +8,7 @@
 // Fails where the surface is not flat across the patch: outlines, leaves.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -16,36 +17,30 @@
 
 namespace polnav::nav {
 
+// What is looked for, and all that can be reckoned before it is known where. Unknowns: place (2),
+// stretch row by row (4), gain, offset.
+struct PatchTemplate {
+  int half = 0;                                  // 2 half + 1 pixels a side
+  Eigen::Matrix<float, 8, Eigen::Dynamic> rows;  // by the unknowns, a column a pixel
+  Eigen::Matrix<float, 8, 1> by_gain;            // rows times the grey values less their mean
+  Eigen::Matrix<float, 8, 1> by_offset;          // rows times ones
+  Eigen::LDLT<Eigen::Matrix<float, 8, 8>> information;
+};
+
 struct PatchPlace {
   cv::Point2f at;  // of the patch's middle [px]
   cv::Matx22f stretch = cv::Matx22f::eye();
 };
 
-class PatchAligner {
- public:
-  // half: the patch has 2 half + 1 pixels a side. least_correlation: of what is to be trusted.
-  PatchAligner(int half, double least_correlation)
-      : half_(half), least_correlation_(static_cast<float>(least_correlation)) {}
+// Around a point of a full-size 8-bit grey image. Nothing where the patch leaves the image or has
+// no contrast, whichever way it is looked at.
+[[nodiscard]] std::optional<PatchTemplate> CutTemplate(const cv::Mat& image,
+                                                       const cv::Point2f& middle, int half);
 
-  // From a guess that is right to a pixel or two. Nothing where the patch has no contrast, leaves
-  // the image, or looks otherwise. Full-size 8-bit grey images.
-  [[nodiscard]] std::optional<PatchPlace> Align(const cv::Mat& from, const cv::Point2f& middle,
-                                                const cv::Mat& to, const PatchPlace& guess);
-
- private:
-  using Vector8f = Eigen::Matrix<float, 8, 1>;
-  using Matrix8f = Eigen::Matrix<float, 8, 8>;
-
-  [[nodiscard]] bool Prepare(const cv::Mat& from, const cv::Point2f& middle);
-
-  int half_;
-  float least_correlation_;
-  // Scratch, kept to save allocations.
-  Patch wide_;
-  Patch template_;
-  Patch seen_;
-  Eigen::Matrix<float, 8, Eigen::Dynamic> rows_;  // of the template, by the unknowns
-  Matrix8f information_ = Matrix8f::Zero();
-};
+// From a guess that is right to a pixel or two. Nothing where the patch leaves the image or
+// correlates less than asked with what is there.
+[[nodiscard]] std::optional<PatchPlace> AlignTemplate(const PatchTemplate& patch,
+                                                      const cv::Mat& image, const PatchPlace& guess,
+                                                      float least_correlation);
 
 }  // namespace polnav::nav

@@ -10,17 +10,13 @@ using cv::TermCriteria;
 
 // A first guess for what follows, and what tells whether a track comes back.
 const TermCriteria kRoughly(TermCriteria::COUNT + TermCriteria::EPS, 12, 0.02);
-// Stopping at a step of 0.01 px may leave that much of the first guess in a position, and always to
-// the same side.
-const TermCriteria kFinely(TermCriteria::COUNT + TermCriteria::EPS, 30, 0.001);
 
 std::vector<std::uint8_t> Follow(const Pyramid& from_pyramid, const Pyramid& to_pyramid,
                                  const std::vector<cv::Point2f>& from, std::vector<cv::Point2f>& to,
-                                 const TrackerOptions& options, int levels,
-                                 const TermCriteria& until) {
+                                 const TrackerOptions& options, int levels) {
   std::vector<std::uint8_t> status;
   cv::calcOpticalFlowPyrLK(from_pyramid, to_pyramid, from, to, status, cv::noArray(),
-                           {options.window_px, options.window_px}, levels, until,
+                           {options.window_px, options.window_px}, levels, kRoughly,
                            cv::OPTFLOW_USE_INITIAL_FLOW);
   return status;
 }
@@ -52,12 +48,12 @@ std::vector<bool> FollowBothWays(const Pyramid& from_pyramid, const Pyramid& to_
   std::vector<bool> ok(from.size(), false);
   if (from.empty()) return ok;
   const std::vector<std::uint8_t> status =
-      Follow(from_pyramid, to_pyramid, from, to, options, options.pyramid_levels, kRoughly);
+      Follow(from_pyramid, to_pyramid, from, to, options, options.pyramid_levels);
   // Starting the way back from the origin would hide a patch that locked onto something else; one
   // pyramid level suffices to see whether it comes back.
   std::vector<cv::Point2f> back = from;
   const std::vector<std::uint8_t> status_back =
-      Follow(to_pyramid, from_pyramid, to, back, options, 1, kRoughly);
+      Follow(to_pyramid, from_pyramid, to, back, options, 1);
   const cv::Size size = to_pyramid[0].size();
   const auto limit = static_cast<float>(options.forward_backward_px);
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -67,14 +63,6 @@ std::vector<bool> FollowBothWays(const Pyramid& from_pyramid, const Pyramid& to_
     ok[i] = status[i] != 0 && status_back[i] != 0 && inside && d.dot(d) < limit * limit;
   }
   return ok;
-}
-
-std::vector<bool> FollowNear(const Pyramid& from_pyramid, const Pyramid& to_pyramid,
-                             const std::vector<cv::Point2f>& from, std::vector<cv::Point2f>& to,
-                             const TrackerOptions& options) {
-  const std::vector<std::uint8_t> status =
-      Follow(from_pyramid, to_pyramid, from, to, options, 0, kFinely);
-  return {status.begin(), status.end()};
 }
 
 }  // namespace polnav::nav

@@ -27,10 +27,4 @@ using Pyramid = std::vector<cv::Mat>;  // as cv::buildOpticalFlowPyramid makes t
                                                std::vector<cv::Point2f>& to,
                                                const TrackerOptions& options);
 
-// To the last hundredth of a pixel where the first guess is already near, at full size only.
-[[nodiscard]] std::vector<bool> FollowNear(const Pyramid& from_pyramid, const Pyramid& to_pyramid,
-                                           const std::vector<cv::Point2f>& from,
-                                           std::vector<cv::Point2f>& to,
-                                           const TrackerOptions& options);
-
 }  // namespace polnav::nav

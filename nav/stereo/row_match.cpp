@@ -88,32 +88,13 @@ std::optional<float> RowMatcher::Coarse(const RowQuery& query) {
 // Gauss-Newton with the slopes of the left patch, which stay: one factorization a point.
 //   right(d, s) = gain left + offset,  unknowns (d, s_x, s_y, gain, offset)
 std::optional<float> RowMatcher::Refine(const RowQuery& query, float disparity_px) {
-  const cv::Mat& left = left_[0];
-  const cv::Point2f p = query.left_raw;
-  const bool inside = ReadPatch(left, p, half_, template_) &&
-                      ReadPatch(left, p + cv::Point2f(1, 0), half_, next_column_) &&
-                      ReadPatch(left, p - cv::Point2f(1, 0), half_, before_column_) &&
-                      ReadPatch(left, p + cv::Point2f(0, 1), half_, next_row_) &&
-                      ReadPatch(left, p - cv::Point2f(0, 1), half_, before_row_);
-  if (!inside) return std::nullopt;
+  if (!ReadPatch(left_[0], query.left_raw, half_ + 1, template_)) return std::nullopt;
   const Curve start = CurveAt(query, disparity_px);
-  slope_.resize(template_.size());
-  Matrix5f H = Matrix5f::Zero();
-  const auto row_of = [&](std::size_t k, int i, int j) {
-    const float g = slope_[k];
-    return Vector5f(g, g * static_cast<float>(i), g * static_cast<float>(j), template_[k], 1.0F);
-  };
-  std::size_t k = 0;
-  for (int j = -half_; j <= half_; ++j) {
-    for (int i = -half_; i <= half_; ++i, ++k) {
-      slope_[k] = 0.5F * (start.along.x * (next_column_[k] - before_column_[k]) +
-                          start.along.y * (next_row_[k] - before_row_[k]));
-      const Vector5f row = row_of(k, i, j);
-      H.noalias() += row * row.transpose();
-    }
-  }
-  const float n = static_cast<float>(template_.size());
-  if (H(0, 0) < n) return std::nullopt;  // a grey value per pixel: noise
+  FillRows(start.along);
+  Matrix5f H = rows_ * rows_.transpose();
+  if (H(0, 0) < static_cast<float>(rows_.cols())) return std::nullopt;  // a grey value per pixel
+  const Vector5f by_gain = H.col(3);
+  const Vector5f by_offset = H.col(4);
   const float ridge = kGreySigma * kGreySigma / (kSlopeSigma * kSlopeSigma);
   H(1, 1) += ridge;
   H(2, 2) += ridge;
@@ -123,17 +104,11 @@ std::optional<float> RowMatcher::Refine(const RowQuery& query, float disparity_p
     const cv::Point2f at = start.at + (x(0) - disparity_px) * start.along;
     const cv::Matx22f stretch(1.0F + start.along.x * x(1), start.along.x * x(2),
                               start.along.y * x(1), 1.0F + start.along.y * x(2));
-    if (!ReadWarped(right_[0], at, stretch, half_, candidate_)) {
-      return std::nullopt;
-    }
-    Vector5f g(0.0F, ridge * x(1), ridge * x(2), 0.0F, 0.0F);
-    k = 0;
-    for (int j = -half_; j <= half_; ++j) {
-      for (int i = -half_; i <= half_; ++i, ++k) {
-        const float residual = candidate_[k] - x(3) * template_[k] - x(4);
-        g += residual * row_of(k, i, j);
-      }
-    }
+    if (!ReadWarped(right_[0], at, stretch, half_, candidate_)) return std::nullopt;
+    const Eigen::Map<const Eigen::VectorXf> seen(candidate_.data(), std::ssize(candidate_));
+    Vector5f g = rows_ * seen - x(3) * by_gain - x(4) * by_offset;
+    g(1) += ridge * x(1);
+    g(2) += ridge * x(2);
     Vector5f step = -solver.solve(g);
     step.tail<2>() *= -1.0F;  // the prediction, not what is seen, has these two
     x += step;
@@ -142,10 +117,29 @@ std::optional<float> RowMatcher::Refine(const RowQuery& query, float disparity_p
     if (lost) return std::nullopt;
     if (std::abs(step(0)) < kEnough_px) break;
   }
+  const Eigen::VectorXf grey = rows_.row(3);
+  template_.assign(grey.begin(), grey.end());
   const bool alike =
       Correlation(template_, candidate_) > static_cast<float>(options_.stereo_correlation);
   const bool plausible = x(0) > kLeastDisparity_px && x(0) < options_.max_disparity_px;
   return alike && plausible ? std::optional(x(0)) : std::nullopt;
+}
+
+// From the template, which is a pixel wider all around than what is compared.
+void RowMatcher::FillRows(const cv::Point2f& along) {
+  const int side = 2 * half_ + 1;
+  const int wide = side + 2;
+  rows_.resize(5, side * side);
+  int k = 0;
+  for (int j = -half_; j <= half_; ++j) {
+    const float* here = template_.data() + (j + half_ + 1) * wide + 1;
+    for (int i = -half_; i <= half_; ++i, ++k, ++here) {
+      const float slope =
+          0.5F * (along.x * (here[1] - here[-1]) + along.y * (here[wide] - here[-wide]));
+      rows_.col(k) << slope, slope * static_cast<float>(i), slope * static_cast<float>(j), here[0],
+          1.0F;
+    }
+  }
 }
 
 // Half-size patches from the right, along the way back in the left image: best where they came

@@ -47,6 +47,7 @@ class RowMatcher {
                                             float last, float step);
   [[nodiscard]] std::optional<float> Coarse(const RowQuery& query);
   [[nodiscard]] std::optional<float> Refine(const RowQuery& query, float disparity_px);
+  void FillRows(const cv::Point2f& along);
   [[nodiscard]] bool LeadsBack(const RowQuery& query, float disparity_px);
 
   const TrackerOptions& options_;
@@ -56,12 +57,8 @@ class RowMatcher {
   int half_;
   // Scratch, kept to save allocations.
   Patch template_;
-  Patch next_column_;
-  Patch next_row_;
-  Patch before_column_;
-  Patch before_row_;
   Patch candidate_;
-  std::vector<float> slope_;  // grey per pixel along the curve
+  Eigen::Matrix<float, 5, Eigen::Dynamic> rows_;  // of the fine search, a column a pixel
 };
 
 }  // namespace polnav::nav

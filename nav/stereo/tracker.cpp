@@ -34,7 +34,6 @@ StereoTracker::StereoTracker(const TrackerOptions& options, const StereoCalibrat
       rectifier_(calibration),
       size_(calibration.left.width_px, calibration.left.height_px),
       describe_(describe),
-      references_(options),
       zero_(options.zero, rectifier_.camera()) {}
 
 bool StereoTracker::FitsCalibration(const cv::Mat& image) const {
@@ -56,7 +55,7 @@ StereoFeatures StereoTracker::Track(const StereoImages& images) {
   const Pyramid right = BuildPyramid(images.right, options_, false);
   if (!pyramid_.empty()) {
     FollowInTime(left);
-    references_.Hold(left, tracks_);
+    HoldToReferences(left, options_, tracks_);
   }
   pyramid_ = std::move(left);
   Detect();
@@ -66,7 +65,7 @@ StereoFeatures StereoTracker::Track(const StereoImages& images) {
     if (f.u_right_px) *f.u_right_px += zero_.zero_px();
   }
   if (describe_) features.descriptors = Describe(images.left, tracks_);
-  references_.Renew(pyramid_, tracks_);
+  RenewReferences(pyramid_, options_, tracks_);
   return features;
 }
 
@@ -87,10 +86,10 @@ void StereoTracker::FollowInTime(const Pyramid& pyramid) {
   std::vector<FollowedPoint> kept;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (!ok[i]) continue;
-    FollowedPoint t = tracks_[i];
+    FollowedPoint& t = tracks_[i];
     t.flow = to[i] - from[i];
     t.raw = to[i];
-    kept.push_back(t);
+    kept.push_back(std::move(t));
   }
   tracks_ = std::move(kept);
 }

@@ -55,7 +55,6 @@ class StereoTracker {
   bool describe_;
   StereoImages newest_;
   Pyramid pyramid_;  // of its left image
-  References references_;
   DisparityZero zero_;
   std::vector<FollowedPoint> tracks_;
   std::uint64_t next_id_ = 0;

@@ -10,36 +10,32 @@ namespace {
 Pyramid PyramidOf(double shift_x) { return BuildPyramid(SpotTexture(shift_x, 0.0), {}, true); }
 
 TEST(References, PutBackWhatHasWandered) {
-  References references({});
   std::vector<FollowedPoint> tracks{{.id = 1, .raw = {200.0F, 180.0F}, .disparity = 5.0F}};
-  references.Renew(PyramidOf(0.0), tracks);
+  RenewReferences(PyramidOf(0.0), {}, tracks);
   tracks[0].raw = {203.5F, 180.3F};  // the picture moves by 3.0 px, the track slipped besides
-  references.Hold(PyramidOf(3.0), tracks);
+  HoldToReferences(PyramidOf(3.0), {}, tracks);
   ASSERT_TRUE(tracks[0].reference);
   EXPECT_NEAR(tracks[0].raw.x, 203.0, 0.05);
   EXPECT_NEAR(tracks[0].raw.y, 180.0, 0.05);
 }
 
 TEST(References, AreGivenUpWhereSomethingElseIsInTheirPlace) {
-  References references({});
   std::vector<FollowedPoint> tracks{{.id = 1, .raw = {200.0F, 180.0F}, .disparity = 5.0F}};
-  references.Renew(PyramidOf(0.0), tracks);
-  references.Hold(PyramidOf(40.0), tracks);
+  RenewReferences(PyramidOf(0.0), {}, tracks);
+  HoldToReferences(PyramidOf(40.0), {}, tracks);
   EXPECT_FALSE(tracks[0].reference);
   EXPECT_EQ(tracks[0].raw, cv::Point2f(200.0F, 180.0F));
 }
 
 TEST(References, BeginAnewWhenThePointHasComeNearer) {
-  References references({});
   std::vector<FollowedPoint> tracks{{.id = 1, .raw = {200.0F, 180.0F}, .disparity = 10.0F}};
-  references.Renew(PyramidOf(0.0), tracks);
-  const auto first = tracks[0].reference;
+  RenewReferences(PyramidOf(0.0), {}, tracks);
   tracks[0].disparity = 11.0F;
-  references.Renew(PyramidOf(0.0), tracks);
-  EXPECT_EQ(tracks[0].reference, first);
+  RenewReferences(PyramidOf(0.0), {}, tracks);
+  EXPECT_EQ(tracks[0].reference_disparity, 10.0F);
   tracks[0].disparity = 20.0F;
-  references.Renew(PyramidOf(0.0), tracks);
-  EXPECT_NE(tracks[0].reference, first);
+  RenewReferences(PyramidOf(0.0), {}, tracks);
+  EXPECT_EQ(tracks[0].reference_disparity, 20.0F);
 }
 
 }  // namespace
