@@ -30,6 +30,7 @@ void Step(const NormalEquations& equations, const Eigen::VectorXd& step, double 
     keyframe.motion.gyro_bias += step.segment<3>(at + 3);
     keyframe.motion.accel_bias += step.segment<3>(at + 6);
   }
+  window.errors += step.segment<kSkyErrors>(layout.Errors());
   const auto landmark_steps = equations.LandmarkSteps(step, damping);
   auto next = landmark_steps.begin();
   for (auto& [id, landmark] : window.landmarks) landmark.coordinates += *next++;
@@ -38,7 +39,7 @@ void Step(const NormalEquations& equations, const Eigen::VectorXd& step, double 
 // The values of the unknowns, to return to.
 class Values {
  public:
-  explicit Values(const Window& window) {
+  explicit Values(const Window& window) : errors_(window.errors) {
     for (const Keyframe& k : window.keyframes) states_.emplace_back(k.T_WB, k.motion);
     for (const auto& [id, landmark] : window.landmarks) {
       coordinates_.push_back(landmark.coordinates);
@@ -49,11 +50,13 @@ class Values {
       window.keyframes[i].T_WB = states_[i].first;
       window.keyframes[i].motion = states_[i].second;
     }
+    window.errors = errors_;
     auto next = coordinates_.begin();
     for (auto& [id, landmark] : window.landmarks) landmark.coordinates = *next++;
   }
 
  private:
+  SkyErrors errors_;
   std::vector<std::pair<Pose, Motion>> states_;
   std::vector<Eigen::Vector3d> coordinates_;
 };

@@ -13,11 +13,14 @@ std::size_t IndexOf(const Window& window, std::uint64_t keyframe) {
   throw std::logic_error("Window: a landmark refers to a keyframe that has slid out");
 }
 
-HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB) {
+HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB,
+                                const SkyErrors& errors) {
   const Eigen::Vector3d x_W = T_WB.q * Eigen::Vector3d::UnitX();
   const double horizontal2 = x_W.head<2>().squaredNorm();
   HeadingResidual r;
-  r.residual = WrapPi(edge.heading_rad - CompassHeading(T_WB.q)) / edge.sigma_rad;
+  const double heading = edge.heading_rad - edge.by_errors.dot(errors);
+  r.residual = WrapPi(heading - CompassHeading(T_WB.q)) / edge.sigma_rad;
+  r.by_errors = -edge.by_errors.transpose() / edge.sigma_rad;
   // psi = atan2(x_E, x_N) and dx = dtheta x x, hence dpsi = (x_N dx_E - x_E dx_N) / (x_E^2 +
   // x_N^2).
   const Eigen::RowVector3d by_x(x_W.y() / horizontal2, -x_W.x() / horizontal2, 0.0);
@@ -68,6 +71,7 @@ Eigen::MatrixXd RootInformation(const Eigen::Matrix<double, kSize, kSize>& covar
 Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance) {
   return {.linearized = {T_WB},
           .motion = {},
+          .errors = {},
           .jacobian = RootInformation<6>(covariance),
           .residual = Eigen::VectorXd::Zero(6)};
 }
@@ -75,8 +79,21 @@ Prior PriorFromCovariance(const Pose& T_WB, const Matrix6d& covariance) {
 Prior PriorFromCovariance(const Pose& T_WB, const Motion& motion, const Matrix15d& covariance) {
   return {.linearized = {T_WB},
           .motion = motion,
+          .errors = {},
           .jacobian = RootInformation<15>(covariance),
           .residual = Eigen::VectorXd::Zero(15)};
+}
+
+void AddErrors(const SkyErrors& errors,
+               const Eigen::Matrix<double, kSkyErrors, kSkyErrors>& covariance, Prior& prior) {
+  const Eigen::Index rows = prior.jacobian.rows();
+  const Eigen::Index columns = prior.jacobian.cols();
+  prior.errors = errors;
+  prior.jacobian.conservativeResizeLike(
+      Eigen::MatrixXd::Zero(rows + kSkyErrors, columns + kSkyErrors));
+  prior.jacobian.bottomRightCorner<kSkyErrors, kSkyErrors>() =
+      RootInformation<kSkyErrors>(covariance);
+  prior.residual.conservativeResizeLike(Eigen::VectorXd::Zero(rows + kSkyErrors));
 }
 
 Eigen::Matrix<double, 9, 1> Difference(const Motion& motion, const Motion& reference) {

@@ -13,10 +13,12 @@ namespace polnav::nav {
 struct HeadingResidual {
   double residual;
   Eigen::Matrix<double, 1, 6> by_pose;
+  Eigen::Matrix<double, 1, kSkyErrors> by_errors;
 };
 
-// e4 = p_i - psi_i [Chu2021, eq. 15], wrapped, and what a tilt makes of p_i.
-[[nodiscard]] HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB);
+// e4 = p_i - psi_i [Chu2021, eq. 15], wrapped, and what a tilt and the instrument make of p_i.
+[[nodiscard]] HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB,
+                                              const SkyErrors& errors = SkyErrors::Zero());
 
 struct LevelResidual {
   Eigen::Vector2d residual;
@@ -36,6 +38,10 @@ struct LevelResidual {
 // The same with its motion: (dp, dtheta, dv, dgyro_bias, daccel_bias).
 [[nodiscard]] Prior PriorFromCovariance(const Pose& T_WB, const Motion& motion,
                                         const Matrix15d& covariance);
+
+// Adds what is known of the sky's errors, besides and independently.
+void AddErrors(const SkyErrors& errors,
+               const Eigen::Matrix<double, kSkyErrors, kSkyErrors>& covariance, Prior& prior);
 
 // motion - reference, as the graph's vector.
 [[nodiscard]] Eigen::Matrix<double, 9, 1> Difference(const Motion& motion, const Motion& reference);

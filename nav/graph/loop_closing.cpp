@@ -51,7 +51,7 @@ void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
                      const Matrix6d& covariance, const StereoFeatures& features,
                      const PoseSolverOptions& solver, Report& report) {
   RefreshSteps(window);
-  AddNode(window.keyframes.back());
+  AddNode(window.keyframes.back(), window.errors);
   if (window.inertial) LevelNewest(window.keyframes.back(), covariance);
   if (const auto seen = places_.Recognize(camera, graph_.nodes, features, solver)) {
     graph_.returns.push_back(*seen);
@@ -65,7 +65,7 @@ void LoopCloser::Add(const RectifiedCamera& camera, const Window& window,
   places_.Remember(camera, graph_.nodes, features);
 }
 
-void LoopCloser::AddNode(const Keyframe& keyframe) {
+void LoopCloser::AddNode(const Keyframe& keyframe, const SkyErrors& errors) {
   if (keyframe.id != graph_.nodes.size()) {
     throw std::logic_error("LoopCloser: a keyframe is missing");
   }
@@ -75,6 +75,7 @@ void LoopCloser::AddNode(const Keyframe& keyframe) {
   node.stamp = keyframe.stamp;
   node.T_WB = keyframe.T_WB;
   node.heading = keyframe.heading;
+  if (node.heading) node.heading->heading_rad -= node.heading->by_errors.dot(errors);
   const std::size_t at = graph_.nodes.size() - 1;
   if (at > 0) {
     const Pose T_ft = newest_T_OB_.Inverse() * keyframe.T_WB;

@@ -43,7 +43,7 @@ class LoopCloser {
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
 
  private:
-  void AddNode(const Keyframe& keyframe);
+  void AddNode(const Keyframe& keyframe, const SkyErrors& errors);
   void LevelNewest(const Keyframe& keyframe, const Matrix6d& covariance);
   void RefreshSteps(const Window& window);
   void Optimize(Report& report);

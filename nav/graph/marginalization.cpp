@@ -70,15 +70,17 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
     Append(layout.Motion(0), 9, gone);
     Append(layout.Motion(1), 9, kept);
   }
+  Append(layout.Errors(), kSkyErrors, kept);
   Prior prior = Eliminate(n.Reduce(), gone, kept);
   window.keyframes.pop_front();
   for (const Keyframe& keyframe : window.keyframes) prior.linearized.push_back(keyframe.T_WB);
   if (layout.inertial) prior.motion = window.keyframes.front().motion;
+  prior.errors = window.errors;
   window.prior = prior;
 }
 
-Matrix15d NewestCovariance(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
-                           const Window& window) {
+StateCovariance NewestCovariance(const RectifiedCamera& camera,
+                                 const BundleAdjustmentOptions& options, const Window& window) {
   const NormalEquations n = LinearizeWindow(camera, options, window);
   const Eigen::LDLT<Eigen::MatrixXd> solver(n.Reduce().H);
   if (solver.info() != Eigen::Success) {
@@ -86,16 +88,22 @@ Matrix15d NewestCovariance(const RectifiedCamera& camera, const BundleAdjustment
   }
   const WindowLayout& layout = n.layout();
   Indices newest;
-  Append(layout.Pose(layout.keyframes - 1), 6, newest);
-  if (layout.inertial) Append(layout.Motion(layout.keyframes - 1), 9, newest);
+  Indices place;  // in the answer
+  const auto append = [&](Eigen::Index from, Eigen::Index count, Eigen::Index to) {
+    Append(from, count, newest);
+    Append(to, count, place);
+  };
+  append(layout.Pose(layout.keyframes - 1), 6, 0);
+  if (layout.inertial) append(layout.Motion(layout.keyframes - 1), 9, 6);
+  append(layout.Errors(), kSkyErrors, 15);
   Eigen::MatrixXd selector = Eigen::MatrixXd::Zero(layout.size(), std::ssize(newest));
   for (Eigen::Index i = 0; i < std::ssize(newest); ++i) {
     selector(newest[static_cast<std::size_t>(i)], i) = 1.0;
   }
   const Eigen::MatrixXd columns = solver.solve(selector);
   const Eigen::MatrixXd block = columns(newest, Eigen::all);
-  Matrix15d covariance = Matrix15d::Zero();
-  covariance.topLeftCorner(block.rows(), block.cols()) = 0.5 * (block + block.transpose());
+  StateCovariance covariance = StateCovariance::Zero();
+  covariance(place, place) = 0.5 * (block + block.transpose());
   return covariance;
 }
 

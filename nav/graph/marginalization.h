@@ -19,10 +19,9 @@ namespace polnav::nav {
 void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
                        Window& window);
 
-// Covariance of the newest keyframe's (dp, dtheta, dv, dgyro_bias, daccel_bias) in W; of a window
-// without an IMU only the first six are there, the rest is zero.
-[[nodiscard]] Matrix15d NewestCovariance(const RectifiedCamera& camera,
-                                         const BundleAdjustmentOptions& options,
-                                         const Window& window);
+// Of the newest keyframe's pose and motion in W, and of the sky's errors.
+[[nodiscard]] StateCovariance NewestCovariance(const RectifiedCamera& camera,
+                                               const BundleAdjustmentOptions& options,
+                                               const Window& window);
 
 }  // namespace polnav::nav

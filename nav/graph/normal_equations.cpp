@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <numeric>
 
 #include "nav/graph/edges.h"
 
@@ -62,16 +63,18 @@ void NormalEquations::AddPrior(const Window& window) {
     J.middleCols<3>(at + 3) =
         prior.jacobian.middleCols<3>(at + 3) * InverseLeftJacobian(delta.tail<3>());
   }
-  const auto poses = layout_.Pose(prior.linearized.size());
+  std::vector<Eigen::Index> at(static_cast<std::size_t>(layout_.Pose(prior.linearized.size())));
+  std::iota(at.begin(), at.end(), 0);
+  const auto take = [&](Eigen::Index from, const Eigen::VectorXd& delta) {
+    r += prior.jacobian.middleCols(std::ssize(at), delta.size()) * delta;
+    for (Eigen::Index k = 0; k < delta.size(); ++k) at.push_back(from + k);
+  };
   if (prior.motion) {
-    r += prior.jacobian.rightCols<9>() * Difference(window.keyframes[0].motion, *prior.motion);
-    const auto at = layout_.Motion(0);
-    H_.block<9, 9>(at, at) += J.rightCols<9>().transpose() * J.rightCols<9>();
-    H_.block(at, 0, 9, poses) += J.rightCols<9>().transpose() * J.leftCols(poses);
-    g_.segment<9>(at) += J.rightCols<9>().transpose() * r;
+    take(layout_.Motion(0), Difference(window.keyframes[0].motion, *prior.motion));
   }
-  H_.topLeftCorner(poses, poses) += J.leftCols(poses).transpose() * J.leftCols(poses);
-  g_.head(poses) += J.leftCols(poses).transpose() * r;
+  if (prior.errors) take(layout_.Errors(), window.errors - *prior.errors);
+  H_(at, at) += J.transpose() * J;
+  g_(at) += J.transpose() * r;
   cost_ += 0.5 * r.squaredNorm();
 }
 
@@ -80,7 +83,11 @@ void NormalEquations::AddKeyframe(const Window& window, std::size_t i) {
   const auto pose = layout_.Pose(i);
   const auto motion = layout_.Motion(i);
   if (keyframe.heading) {
-    const HeadingResidual e = EvaluateHeading(*keyframe.heading, keyframe.T_WB);
+    const HeadingResidual e = EvaluateHeading(*keyframe.heading, keyframe.T_WB, window.errors);
+    const auto errors = layout_.Errors();
+    H_.block<kSkyErrors, 6>(errors, pose) += e.by_errors.transpose() * e.by_pose;
+    H_.block<kSkyErrors, kSkyErrors>(errors, errors) += e.by_errors.transpose() * e.by_errors;
+    g_.segment<kSkyErrors>(errors) += e.by_errors.transpose() * e.residual;
     H_.block<6, 6>(pose, pose) += e.by_pose.transpose() * e.by_pose;
     g_.segment<6>(pose) += e.by_pose.transpose() * e.residual;
     cost_ += 0.5 * e.residual * e.residual;

@@ -2,8 +2,8 @@
 //
 // Cost 1/2 sum |r|^2, Huber-robust where an edge may be wrong, as 1/2 d^T H d + g^T d + cost about
 // the current values. d stacks the keyframes' (dp, dtheta) in W, six each, then with an IMU their
-// (dv, dgyro_bias, daccel_bias), nine each; landmarks are kept aside, each with a block of its own,
-// and eliminated by Reduce. Internal to nav/graph.
+// (dv, dgyro_bias, daccel_bias), nine each, and last the sky's errors; landmarks are kept aside,
+// each with a block of its own, and eliminated by Reduce. Internal to nav/graph.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,10 @@ struct WindowLayout {
   [[nodiscard]] Eigen::Index Motion(std::size_t i) const {
     return 6 * static_cast<Eigen::Index>(keyframes) + 9 * static_cast<Eigen::Index>(i);
   }
-  [[nodiscard]] Eigen::Index size() const { return inertial ? Motion(keyframes) : Pose(keyframes); }
+  [[nodiscard]] Eigen::Index Errors() const {
+    return inertial ? Motion(keyframes) : Pose(keyframes);
+  }
+  [[nodiscard]] Eigen::Index size() const { return Errors() + kSkyErrors; }
 };
 
 class NormalEquations {

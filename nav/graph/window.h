@@ -20,10 +20,22 @@
 
 namespace polnav::nav {
 
+// Headings that the polarimeter fakes, constants that the window finds out on the way [rad]:
+//   0     by a turn in its mounting
+//   1..4  by the cosine and sine of twice, and of four times, the light's axis: channels that are
+//         not equal, polarizers that are crooked
+inline constexpr int kSkyErrors = 5;
+using SkyErrors = Eigen::Matrix<double, kSkyErrors, 1>;
+
+// Of (dp, dtheta), of (dv, dgyro_bias, daccel_bias), zero without an IMU, and of the sky's errors.
+inline constexpr int kState = 15 + kSkyErrors;
+using StateCovariance = Eigen::Matrix<double, kState, kState>;
+
 // Compass heading of a keyframe from polarization, the half turn already chosen.
 struct HeadingEdge {
   double heading_rad = 0.0;
   double sigma_rad = 0.0;
+  SkyErrors by_errors = SkyErrors::Zero();  // of the heading that is read
   // The heading that the sky gives changes by this times a tilt about W's east and north, against
   // the attitude that it was found with. Zero: the heading alone counts [Chu2021, eq. 15].
   Eigen::Vector2d by_tilt = Eigen::Vector2d::Zero();
@@ -72,11 +84,12 @@ struct Landmark {
 };
 
 // 1/2 | residual + jacobian * delta |^2 where delta stacks Difference(pose, linearized) of the
-// first keyframes of the window, in their order, and then, with an IMU, the first one's motion
-// minus where it is linearized.
+// first keyframes of the window, in their order, then, with an IMU, the first one's motion minus
+// where it is linearized, and last, in a window, the sky's errors, likewise.
 struct Prior {
   std::vector<Pose> linearized;
   std::optional<Motion> motion;
+  std::optional<SkyErrors> errors;
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;
 };
@@ -85,6 +98,7 @@ struct Window {
   bool inertial = false;                        // the rig has an IMU: motions are estimated
   std::deque<Keyframe> keyframes;               // oldest first
   std::map<std::uint64_t, Landmark> landmarks;  // by track id: ordered, so that sums are too
+  SkyErrors errors = SkyErrors::Zero();
   Prior prior;
 };
 

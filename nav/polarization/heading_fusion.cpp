@@ -19,11 +19,30 @@ double HeadingVariance(const Eigen::Vector2d& by_tilt, const Eigen::Matrix3d& co
   return by_attitude.dot(covariance * by_attitude);
 }
 
+// Of the heading that is read. Turned about its view, the instrument sees the axis turned, and the
+// heading with it.
+SkyErrors ByErrors(double axis_rad) {
+  SkyErrors by;
+  by << 1.0, std::cos(2.0 * axis_rad), std::sin(2.0 * axis_rad), std::cos(4.0 * axis_rad),
+      std::sin(4.0 * axis_rad);
+  return by;
+}
+
+// So that a perfect instrument leaves no singular matrix.
+constexpr double kLeastError_rad = 1e-7;
+
 }  // namespace
 
 HeadingFusion::HeadingFusion(const PolarizationOptions& options,
                              const PolarimeterCalibration& calibration, SunModel sun)
     : options_(options), calibration_(calibration), sun_(std::move(sun)) {}
+
+SkyErrors HeadingFusion::ErrorSigmas() const {
+  SkyErrors sigmas;
+  sigmas.setConstant(std::max(kLeastError_rad, DegToRad(options_.harmonic_sigma_deg)));
+  sigmas(0) = std::max(kLeastError_rad, DegToRad(options_.mount_sigma_deg));
+  return sigmas;
+}
 
 Outcome HeadingFusion::Add(const PolarizationSample& sample) {
   const bool frozen = newest_ && sample.channel == newest_->channel;
@@ -50,7 +69,9 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
   const double slow =
       DegToRad(std::hypot(options_.correlated_sigma_deg, options_.foreign_sigma_deg * foreign));
   const double innovation = WrapPi(*heading - CompassHeading(q_WB));
-  const double variance = white * white + slow * slow + HeadingVariance(by_tilt, covariance);
+  const SkyErrors by_errors = ByErrors(reading.light.axis_rad);
+  const double variance = white * white + slow * slow + HeadingVariance(by_tilt, covariance) +
+                          by_errors.cwiseProduct(ErrorSigmas()).squaredNorm();
   const bool gated = std::abs(innovation) > options_.gate_sigmas * std::sqrt(variance);
   residuals_.push_back({reading.stamp, innovation, std::sqrt(variance), gated});
   if (gated) return false;
@@ -60,6 +81,7 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
   sums_.innovation_rad += weight * innovation;
   sums_.slow2_rad2 += weight * slow * slow;
   sums_.by_tilt += weight * by_tilt;
+  sums_.by_errors += weight * by_errors;
   return true;
 }
 
@@ -89,16 +111,17 @@ std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Qu
   const double white2 = 1.0 / sums.weight;
   const double slow2 = sums.slow2_rad2 / sums.weight;
   const Eigen::Vector2d by_tilt = sums.by_tilt / sums.weight;
-  const double attitude2 = HeadingVariance(by_tilt, covariance);
-  if (std::abs(mean) > options_.edge_gate_sigmas * std::sqrt(white2 + slow2 + attitude2)) {
-    return std::nullopt;
-  }
+  const SkyErrors by_errors = sums.by_errors / sums.weight;
+  const double expected2 = white2 + slow2 + HeadingVariance(by_tilt, covariance) +
+                           by_errors.cwiseProduct(ErrorSigmas()).squaredNorm();
+  if (std::abs(mean) > options_.edge_gate_sigmas * std::sqrt(expected2)) return std::nullopt;
   // The slow part counts once at the start; after that, as often as it has changed.
   const double slow_share =
       first ? 1.0
             : std::max(1.0, 2.0 * options_.correlation_time_s / ToSeconds(stamp - *last_edge_));
   last_edge_ = stamp;
-  HeadingEdge edge{.heading_rad = WrapPi(CompassHeading(q_WB) + mean), .q_WB = q_WB};
+  HeadingEdge edge{
+      .heading_rad = WrapPi(CompassHeading(q_WB) + mean), .by_errors = by_errors, .q_WB = q_WB};
   double variance = white2 + slow2 * slow_share;
   if (options_.full_attitude) {
     edge.by_tilt = by_tilt;

@@ -33,6 +33,9 @@ class HeadingFusion {
   HeadingFusion(const PolarizationOptions& options, const PolarimeterCalibration& calibration,
                 SunModel sun);
 
+  // Of the instrument's errors that are estimated, one sigma; see window.h [rad].
+  [[nodiscard]] SkyErrors ErrorSigmas() const;
+
   // Keeps the reading until the attitude at its stamp is known. Unusable: too little polarized, a
   // channel that does not fit the others, older than the newest frame, the same once more, or the
   // last one to the last bit, which noise forbids: a frozen driver.
@@ -63,6 +66,7 @@ class HeadingFusion {
     double innovation_rad = 0.0;
     double slow2_rad2 = 0.0;
     Eigen::Vector2d by_tilt = Eigen::Vector2d::Zero();
+    SkyErrors by_errors = SkyErrors::Zero();
   };
 
   [[nodiscard]] bool Take(const Reading& reading, const Eigen::Quaterniond& q_WB,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "nav/polarization/reading_errors.h"
 #include "nav/polarization/six_channel.h"
 #include "nav/polarization/sky_heading.h"
 
@@ -28,8 +29,7 @@ Report PolarimeterCompass::Process(const Measurement& measurement) {
   if (!heading) return {.outcome = Outcome::kUnusable};
   last_rad_ = *heading;
   Estimate estimate{.stamp = sample->stamp, .T_WB = {.q = LevelAttitude(last_rad_)}};
-  const double sigma_rad =
-      DegToRad(std::hypot(options_.reading_sigma_deg, options_.correlated_sigma_deg));
+  const double sigma_rad = std::hypot(DegToRad(options_.reading_sigma_deg), SlowSigma(options_));
   estimate.covariance(5, 5) = sigma_rad * sigma_rad;
   estimate.tracked = true;
   return {.outcome = Outcome::kUsed, .estimate = estimate};

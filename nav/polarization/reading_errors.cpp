@@ -1,6 +1,7 @@
 #include "nav/polarization/reading_errors.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "nav/polarization/sky_heading.h"
 
@@ -12,6 +13,12 @@ constexpr double kReferenceDop = 0.5;  // at which options' white part is stated
 constexpr double kLeastClear = 0.8;
 
 }  // namespace
+
+double SlowSigma(const PolarizationOptions& options) {
+  // Four harmonics, of which sine and cosine take turns.
+  return DegToRad(std::hypot(options.correlated_sigma_deg, options.mount_sigma_deg,
+                             std::sqrt(2.0) * options.harmonic_sigma_deg));
+}
 
 ReadingErrors ErrorsOf(const PolarizedLight& light, const Eigen::Vector3d& look_W,
                        const Eigen::Vector3d& sun_W, const PolarizationOptions& options) {

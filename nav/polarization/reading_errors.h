@@ -11,6 +11,9 @@
 
 namespace polnav::nav {
 
+// What does not average out over some seconds, the instrument's own errors included [rad].
+[[nodiscard]] double SlowSigma(const PolarizationOptions& options);
+
 struct ReadingErrors {
   double white_rad = 0.0;      // one sigma
   double foreign_share = 0.0;  // of light that a clear sky would not send, over the sky's own

@@ -58,7 +58,10 @@ StereoEstimator::StereoEstimator(const StereoOptions& options, const StereoCalib
   if (imu && options.use_imu) imu_.emplace(*imu, options.inertial);
   if (close_loops) loops_.emplace(options.loops, PriorFromCovariance(T_WB_, covariance_));
   window_.inertial = imu_.has_value();
-  if (imu_) state_covariance_.bottomRightCorner<9, 9>() = imu_->StartCovariance();
+  // Without a sky there is nothing to tell, and nothing that it could move.
+  const SkyErrors sigmas = polarization_ ? polarization_->ErrorSigmas() : SkyErrors::Ones();
+  state_covariance_.diagonal().tail<kSkyErrors>() = sigmas.cwiseAbs2();
+  if (imu_) state_covariance_.block<9, 9>(6, 6) = imu_->StartCovariance();
 }
 
 Report StereoEstimator::Process(const Measurement& measurement) {
@@ -133,7 +136,8 @@ StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
   const double dt = ToSeconds(stamp - stamp_);
   if (imu_) {
     imu_->Advance(stamp);
-    if (const auto p = imu_->Predict(window_.keyframes.back(), state_covariance_)) {
+    if (const auto p =
+            imu_->Predict(window_.keyframes.back(), state_covariance_.topLeftCorner<15, 15>())) {
       const Matrix6d pose = p->covariance.topLeftCorner<6, 6>() +
                             MotionCovariance(kImuSpeedSigma_m_s * dt, kImuRateSigma_rad_s * dt);
       const Eigen::Matrix<double, 3, 6> by_pose =
@@ -208,7 +212,7 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
     const Motion& before = window_.keyframes.back().motion;
     keyframe.motion = before;
     keyframe.motion.v_WI = v_WI_;
-    imu_->Connect(before, state_covariance_, keyframe);
+    imu_->Connect(before, state_covariance_.topLeftCorner<15, 15>(), keyframe);
   }
   window_.keyframes.push_back(keyframe);
   keyframe_views_ = AddSightings(camera_, features, seen, rejected_, window_);
@@ -245,16 +249,18 @@ void StereoEstimator::Begin(const Matrix6d& covariance) {
   const Motion motion = window_.keyframes.empty() ? Motion{} : window_.keyframes.back().motion;
   window_.keyframes.clear();
   window_.landmarks.clear();
-  if (!imu_) {
+  // What the sensors are off by is known as before; the velocity is not.
+  if (imu_) {
+    Matrix15d state = Matrix15d::Zero();
+    state.topLeftCorner<6, 6>() = covariance;
+    state.bottomRightCorner<9, 9>() = imu_->StartCovariance();
+    state.bottomRightCorner<6, 6>() = state_covariance_.block<6, 6>(9, 9);
+    window_.prior = PriorFromCovariance(T_WB_, motion, state);
+  } else {
     window_.prior = PriorFromCovariance(T_WB_, covariance);
-    return;
   }
-  // What the biases are is known as before; the velocity is not.
-  Matrix15d state = Matrix15d::Zero();
-  state.topLeftCorner<6, 6>() = covariance;
-  state.bottomRightCorner<9, 9>() = imu_->StartCovariance();
-  state.bottomRightCorner<6, 6>() = state_covariance_.bottomRightCorner<6, 6>();
-  window_.prior = PriorFromCovariance(T_WB_, motion, state);
+  AddErrors(window_.errors, state_covariance_.bottomRightCorner<kSkyErrors, kSkyErrors>(),
+            window_.prior);
 }
 
 }  // namespace polnav::nav

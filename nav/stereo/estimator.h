@@ -72,7 +72,7 @@ class StereoEstimator {
   std::optional<LoopCloser> loops_;
 
   Window window_;
-  Matrix15d state_covariance_ = Matrix15d::Zero();  // of the newest keyframe
+  StateCovariance state_covariance_ = StateCovariance::Zero();  // of the newest keyframe
   int keyframe_views_ = 0;
   std::uint64_t next_keyframe_ = 0;
   RejectedTracks rejected_;

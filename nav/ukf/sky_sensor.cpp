@@ -13,7 +13,7 @@ SkyReading WeighReading(const PolarizedLight& light, const Eigen::Vector3d& sun_
   return {.light = light,
           .sun_W = sun_W,
           .white_rad = white_rad,
-          .slow_rad = DegToRad(options.correlated_sigma_deg),
+          .slow_rad = SlowSigma(options),
           .foreign_rad = DegToRad(options.foreign_sigma_deg) * foreign_share};
 }
 
