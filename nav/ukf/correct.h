@@ -4,6 +4,7 @@
 // [Schmidt1966]: they are not learned, and what they make uncertain stays uncertain.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "nav/ukf/sigma_points.h"
@@ -37,10 +38,16 @@ template <int Z>
   const auto& c = expected.covariance_with_state;
   Eigen::Matrix<double, kSize, Z> gain = c * inverse;
   gain.template bottomRows<kSize - kEstimated>().setZero();
-  const Eigen::Matrix<double, kSize, Z> rest = c - gain * covariance;
-  state.P.noalias() -= gain * c.transpose();
-  state.P.noalias() -= rest * gain.transpose();
-  state.P = 0.5 * (state.P + state.P.transpose()).eval();
+  constexpr Eigen::Index kConsidered = kSize - kEstimated;
+  const Eigen::Matrix<double, kConsidered, kConsidered> considered =
+      state.P.template bottomRightCorner<kConsidered, kConsidered>();
+  // c S^-1 c^T as a square, so that it is symmetric to the last bit.
+  const Square root = inverse.llt().matrixL();
+  const Eigen::Matrix<double, kSize, Z> share = c * root;
+  for (Eigen::Index j = 0; j < kSize; ++j) {
+    state.P.col(j).noalias() -= share * share.row(j).transpose();
+  }
+  state.P.template bottomRightCorner<kConsidered, kConsidered>() = considered;
   if (!IsSound(state.P)) correction.repaired = Repair(state.P);
   Move(gain * residual, state);
   return correction;
