@@ -55,19 +55,28 @@ using Rows = Eigen::Matrix<double, kLinear, kSize>;
 
 // What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da. Its
 // rows of u and p; theta has no rest, the others stay.
-Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half, double h,
-               const Covariance& P) {
+Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half,
+               const Eigen::Vector3d& acceleration_I, double h, const Covariance& P) {
   const Eigen::Matrix3d by_accel = h * R_half;
   Rows rest = P.middleRows<kLinear>(kVelocity);
   rest.noalias() -= columns.middleRows<kLinear>(kVelocity) * columns.transpose();
   Eigen::Matrix<double, 3, kSize> accel = P.middleRows<3>(kAccelBias);
-  accel.noalias() -= columns.middleRows<3>(kAccelBias) * columns.transpose();
+  Eigen::Matrix<double, 3, kCurved> taken = columns.middleRows<3>(kAccelBias);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Index at = kAccelForm + 2 * k;
+    accel.topRows<2>() += acceleration_I(k) * P.middleRows<2>(at);
+    taken.topRows<2>() += acceleration_I(k) * columns.middleRows<2>(at);
+  }
+  accel.noalias() -= taken * columns.transpose();
   const Eigen::Matrix<double, 3, kSize> gained = by_accel * accel;
   rest.bottomRows<3>() += h * rest.topRows<3>() - 0.5 * h * gained;
   rest.topRows<3>() -= gained;
   // The same from the other side.
-  const Eigen::Matrix<double, kLinear, 3> aside =
-      rest.middleCols<3>(kAccelBias) * by_accel.transpose();
+  Eigen::Matrix<double, kLinear, 3> by_column = rest.middleCols<3>(kAccelBias);
+  for (int k = 0; k < 3; ++k) {
+    by_column.leftCols<2>() += acceleration_I(k) * rest.middleCols<2>(kAccelForm + 2 * k);
+  }
+  const Eigen::Matrix<double, kLinear, 3> aside = by_column * by_accel.transpose();
   rest.middleCols<3>(kPosition) += h * rest.middleCols<3>(kVelocity) - 0.5 * h * aside;
   rest.middleCols<3>(kVelocity) -= aside;
   return rest;
@@ -164,7 +173,8 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
   i.v_next = i.v + h_s * acceleration;
 
   const Columns<kCurved> columns = TakeCurved(i.gyro_z, state.P);
-  const Rows rest = CarryRest(columns, half.toRotationMatrix(), h_s, state.P);
+  const Eigen::Vector3d acceleration_I = half.conjugate() * acceleration;
+  const Rows rest = CarryRest(columns, half.toRotationMatrix(), acceleration_I, h_s, state.P);
   Error shift = Error::Zero();
   shift.head<kMoved>() = Gather(i, columns, rest, state.P);
   AddNoise(i, acceleration, noise, state.P);
