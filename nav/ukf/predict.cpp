@@ -11,7 +11,7 @@ namespace polnav::nav::ukf {
 namespace {
 
 constexpr double kFlicker_s = 30.0;
-constexpr double kShake_s = 0.05;    // of a step's shock
+constexpr double kStep_s = 0.05;  // of a step
 constexpr int kCurved = 6;           // attitude and rate
 constexpr Eigen::Index kMoved = 9;   // theta, u, p: what an interval changes by more than a factor
 constexpr Eigen::Index kLinear = 6;  // of these, what the curved directions leave: u, p
@@ -55,38 +55,30 @@ using Rows = Eigen::Matrix<double, kLinear, kSize>;
 
 // What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da. Its
 // rows of u and p; theta has no rest, the others stay.
-Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half,
-               const Eigen::Vector3d& acceleration_I, double h, const Covariance& P) {
+Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half, double h,
+               const Covariance& P) {
   const Eigen::Matrix3d by_accel = h * R_half;
   Rows rest = P.middleRows<kLinear>(kVelocity);
   rest.noalias() -= columns.middleRows<kLinear>(kVelocity) * columns.transpose();
   Eigen::Matrix<double, 3, kSize> accel = P.middleRows<3>(kAccelBias);
-  Eigen::Matrix<double, 3, kCurved> taken = columns.middleRows<3>(kAccelBias);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Index at = kAccelForm + 2 * k;
-    accel.topRows<2>() += acceleration_I(k) * P.middleRows<2>(at);
-    taken.topRows<2>() += acceleration_I(k) * columns.middleRows<2>(at);
-  }
-  accel.noalias() -= taken * columns.transpose();
+  accel.noalias() -= columns.middleRows<3>(kAccelBias) * columns.transpose();
   const Eigen::Matrix<double, 3, kSize> gained = by_accel * accel;
   rest.bottomRows<3>() += h * rest.topRows<3>() - 0.5 * h * gained;
   rest.topRows<3>() -= gained;
   // The same from the other side.
-  Eigen::Matrix<double, kLinear, 3> by_column = rest.middleCols<3>(kAccelBias);
-  for (int k = 0; k < 3; ++k) {
-    by_column.leftCols<2>() += acceleration_I(k) * rest.middleCols<2>(kAccelForm + 2 * k);
-  }
-  const Eigen::Matrix<double, kLinear, 3> aside = by_column * by_accel.transpose();
+  const Eigen::Matrix<double, kLinear, 3> aside =
+      rest.middleCols<3>(kAccelBias) * by_accel.transpose();
   rest.middleCols<3>(kPosition) += h * rest.middleCols<3>(kVelocity) - 0.5 * h * aside;
   rest.middleCols<3>(kVelocity) -= aside;
   return rest;
 }
 
-void AddNoise(const Interval& i, const Eigen::Vector3d& acceleration, const ProcessNoise& n,
-              Covariance& P) {
+void AddNoise(const Interval& i, const ProcessNoise& n, Covariance& P) {
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kTheta).array() += i.h * n.gyro_rad2_s;
-  const double accel = n.accel_m2_s3 + n.accel_by_accel2_s * acceleration.squaredNorm();
+  // Beside gravity of a level robot, whose share is in the biases.
+  const Eigen::Vector3d swing = i.force - Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
+  const double accel = n.accel_m2_s3 + n.accel_by_swing2_s * swing.squaredNorm();
   for (Eigen::Index k = 0; k < 3; ++k) {
     P(kVelocity + k, kVelocity + k) += i.h * accel;
     P(kPosition + k, kPosition + k) += 0.25 * i.h * i.h * i.h * accel;
@@ -153,7 +145,7 @@ ProcessNoise NoiseOf(const ImuCalibration& imu, const UkfOptions& options, doubl
                                Square(imu.gyro_bias_instability_rad_s) / kFlicker_s,
           .accel_bias_m2_s5 = Square(imu.accel_bias_walk_m_s2_sqrt_s) +
                               Square(imu.accel_bias_instability_m_s2) / kFlicker_s,
-          .accel_by_accel2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kShake_s,
+          .accel_by_swing2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kStep_s,
           .terrain_m2_m = Square(options.terrain_sigma_m_sqrt_m),
           .sky_time_s = std::max(sky_time_s, 1e-3)};
 }
@@ -173,11 +165,10 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
   i.v_next = i.v + h_s * acceleration;
 
   const Columns<kCurved> columns = TakeCurved(i.gyro_z, state.P);
-  const Eigen::Vector3d acceleration_I = half.conjugate() * acceleration;
-  const Rows rest = CarryRest(columns, half.toRotationMatrix(), acceleration_I, h_s, state.P);
+  const Rows rest = CarryRest(columns, half.toRotationMatrix(), h_s, state.P);
   Error shift = Error::Zero();
   shift.head<kMoved>() = Gather(i, columns, rest, state.P);
-  AddNoise(i, acceleration, noise, state.P);
+  AddNoise(i, noise, state.P);
 
   state.stamp = stamp;
   state.q_WI = i.q_next;

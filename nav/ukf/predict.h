@@ -19,8 +19,10 @@ struct ProcessNoise {
   double accel_m2_s3 = 0.0;
   double gyro_bias_rad2_s3 = 0.0;
   double accel_bias_m2_s5 = 0.0;
-  // Errors in proportion to the acceleration, and how long they act in one direction.
-  double accel_by_accel2_s = 0.0;
+  // Errors in proportion to how the force swings with the steps, and how long they act in one
+  // direction. They come again with every step: if the filter took the velocity through a step from
+  // the accelerometers rather than from the flow, their scale would become the walk's.
+  double accel_by_swing2_s = 0.0;
   double terrain_m2_m = 0.0;  // a metre of the way
   double sky_time_s = 1.0;    // correlation of the sky's slow errors
 };

@@ -80,9 +80,6 @@ State StartState(const UkfOptions& options, const ImuCalibration& imu,
   variance(kFlowScale) = Square(flow.flow_scale_sigma) + Square(options.range_scale_sigma);
   variance(kFlowYaw) = across;
   variance(kSkyOffset) = Square(DegToRad(options.sky_offset_sigma_deg));
-  const double form = Square(options.accel_scale_sigma);
-  variance.segment<6>(kAccelForm) << form, Square(crooked), Square(crooked), form, Square(crooked),
-      Square(crooked);
   Covariance by = Covariance::Identity();  // IMU's position by the body's
   by.block<3, 3>(kPosition, kTheta) = -Skew(lever_W);
   s.P = by * variance.asDiagonal() * by.transpose();
