@@ -69,6 +69,7 @@ void PaperUkf::Align() {
   const auto errors = standing_.Errors();
   if (!errors) return;
   errors_ = *errors;
+  if (flow_stood_s_ > 0.0) flow_bias_rad_s_ = flow_turned_rad_.head<2>() / flow_stood_s_;
   x_.tail<4>() = Coefficients(LevelAttitude(start_.heading_rad) * errors_.q_LB);
 }
 
@@ -176,12 +177,18 @@ Outcome PaperUkf::TakeFlow(const OpticalFlowSample& sample, Report& report) {
   const bool sound = sample.flow_rad.allFinite() && sample.gyro_rad.allFinite() &&
                      sample.integration > 0 && sample.quality >= kQuality && sample.range_m &&
                      std::isfinite(*sample.range_m) && *sample.range_m > 0.0;
-  if (!sound || !aligned_ || *now_ - sample.stamp > kLatest) return Outcome::kUnusable;
+  if (!sound || !now_ || *now_ - sample.stamp > kLatest) return Outcome::kUnusable;
+  const double integration_s = ToSeconds(sample.integration);
+  if (!aligned_) {
+    flow_turned_rad_ += sample.gyro_rad;
+    flow_stood_s_ += integration_s;
+    return Outcome::kUsed;
+  }
   const std::optional<OpticalFlowSample> before = std::exchange(ranged_, sample);
   if (!before || sample.stamp <= before->stamp) return Outcome::kUnusable;
   const double d = *sample.range_m;
-  const Eigen::Vector2d moved =
-      d / ToSeconds(sample.integration) * (sample.flow_rad - sample.gyro_rad.head<2>());
+  const Eigen::Vector2d turned = sample.gyro_rad.head<2>() - integration_s * flow_bias_rad_s_;
+  const Eigen::Vector2d moved = d / integration_s * (sample.flow_rad - turned);
   const double climb = (d - *before->range_m) / ToSeconds(sample.stamp - before->stamp);
   const Eigen::Vector3d v_F(moved.y(), -moved.x(), -climb);
   const Eigen::Vector3d measured = flow_.T_BF.q * v_F - rate_B_.cross(flow_.T_BF.p);

@@ -8,9 +8,9 @@
 // As printed but for what a run needs: sensors that are not at B's origin have their lever arms
 // taken out, as the paper assumes done; a covariance that is not definite is mended.
 // With start.standing_s it stands for so long first, as an inertial navigator is aligned: the mean
-// rate and what the force has beyond gravity are taken off all readings after, and level is where
-// the force points. The paper does not speak of it.
-// Fails as it must: biases go into tilt and velocity, tilt into the heading; nothing is gated.
+// rates of both sensors' gyroscopes and what the force has beyond gravity are taken off all
+// readings after, and level is where the force points. The paper does not speak of it. Fails as it
+// must: biases go into tilt and velocity, tilt into the heading; nothing is gated.
 #pragma once
 
 #include <optional>
@@ -65,6 +65,10 @@ class PaperUkf {
   std::optional<TimeNs> began_;
   bool aligned_ = false;
   ukf::StandingErrors errors_;  // taken off the IMU's readings
+  // What the flow sensor's own gyroscopes turned while the robot stood, and in which time.
+  Eigen::Vector3d flow_turned_rad_ = Eigen::Vector3d::Zero();
+  double flow_stood_s_ = 0.0;
+  Eigen::Vector2d flow_bias_rad_s_ = Eigen::Vector2d::Zero();
 
   std::optional<TimeNs> now_;
   Vector x_ = Vector::Zero();
