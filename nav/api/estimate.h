@@ -22,6 +22,7 @@ struct StartPrior {
   double heading_rad = 0.0;
   double heading_sigma_rad = 0.0;
   double level_sigma_rad = 0.0;  // of the assumption that the vehicle starts level
+  double standing_s = 0.0;       // it will not move for so long
 };
 
 // What an estimator believes of its IMU.

@@ -17,12 +17,18 @@ struct Correction {
   bool usable = true;     // false: a number that is none; the state is as it was
 };
 
+// Elements that stay as they are, though they could be learned.
+struct Kept {
+  Eigen::Index first = 0;
+  Eigen::Index count = 0;
+};
+
 // residual: measured less expected. Beyond gate_sigmas the state stays as it is.
 template <int Z>
 [[nodiscard]] Correction Correct(const Expected<Z>& expected,
                                  const Eigen::Matrix<double, Z, 1>& residual,
                                  const Eigen::Matrix<double, Z, Z>& noise, double gate_sigmas,
-                                 State& state) {
+                                 State& state, const Kept& kept = {}) {
   using Square = Eigen::Matrix<double, Z, Z>;
   const Square covariance = expected.covariance + noise;
   const Square inverse = covariance.inverse();
@@ -37,10 +43,13 @@ template <int Z>
   const auto& c = expected.covariance_with_state;
   Eigen::Matrix<double, kSize, Z> gain = c * inverse;
   gain.template bottomRows<kSize - kEstimated>().setZero();
-  const Eigen::Matrix<double, kSize, Z> rest = c - gain * covariance;
-  state.P.noalias() -= gain * c.transpose();
-  state.P.noalias() -= rest * gain.transpose();
-  state.P = 0.5 * (state.P + state.P.transpose()).eval();
+  for (Eigen::Index i = kept.first; i < kept.first + kept.count; ++i) gain.row(i).setZero();
+  // (1 - K H) P (1 - K H)^T + K R K^T of whatever gain: P - K b^T - b K^T with b = c - K S / 2.
+  const Eigen::Matrix<double, kSize, Z> b = c - 0.5 * gain * covariance;
+  for (Eigen::Index j = 0; j < kSize; ++j) {
+    state.P.col(j).noalias() -= gain * b.row(j).transpose();
+    state.P.col(j).noalias() -= b * gain.row(j).transpose();
+  }
   if (!IsSound(state.P)) correction.repaired = Repair(state.P);
   Move(gain * residual, state);
   return correction;

@@ -2,8 +2,11 @@
 //
 //   F     z along the optical axis, down; flow and its signs: nav/api/measurements.h
 //   range d = (height of F above the ground below) / (downward part of F's z axis)
-//   flow  (w_x - v_y / d, w_y + v_x / d) (1 + flow_scale), turned by flow_yaw, means over the
-//         interval; v of F, so with the lever arm
+//   flow  (w_x - v_y / d, w_y + v_x / d), means over the interval; v of F, so with the lever arm.
+//         What the turn makes of it and what the walk makes of it err differently: the one by
+//         1 + flow_turn, as gyroscopes and camera differ in scale and axes, which the steps' swing
+//         shows within seconds; the other by 1 + flow_scale, turned by flow_yaw, which nothing
+//         shows
 // Curved along pitch and roll, and for the flow along the height; linear along all others. A slope
 // of the ground is noise. Fails where the ground is no ground: steps, edges, grass that moves.
 #pragma once

@@ -20,7 +20,7 @@ struct UkfOptions {
   // The ground under the robot: how its height wanders along the way, and how rough it is where
   // two readings side by side look at it. Larger holds the height less tightly.
   double terrain_sigma_m_sqrt_m = 0.005;
-  double roughness_sigma_m = 0.002;
+  double roughness_sigma_m = 0.0005;
   double slope_sigma = 0.05;          // seen beside the nadir as the body tilts [-]
   double range_scale_sigma = 0.013;   // speed of sound and offset, as a share of the range
   double min_quality = 0.2;           // of a reading of the optical flow; below it is left out

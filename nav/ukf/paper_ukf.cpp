@@ -59,8 +59,23 @@ Report PaperUkf::Process(const Measurement& measurement) {
   return report;
 }
 
+bool PaperUkf::StandsYet(TimeNs stamp) const {
+  return ToSeconds(stamp - *began_) < start_.standing_s;
+}
+
+// The start's attitude, tilted as the force says.
+void PaperUkf::Align() {
+  aligned_ = true;
+  const auto errors = standing_.Errors();
+  if (!errors) return;
+  errors_ = *errors;
+  if (flow_stood_s_ > 0.0) flow_bias_rad_s_ = flow_turned_rad_.head<2>() / flow_stood_s_;
+  x_.tail<4>() = Coefficients(LevelAttitude(start_.heading_rad) * errors_.q_LB);
+}
+
 void PaperUkf::Begin(TimeNs stamp) {
   now_ = answered_ = stamp;
+  began_ = stamp;
   const Eigen::Quaterniond q = LevelAttitude(start_.heading_rad);
   x_ << start_.p_WB_m, Eigen::Vector3d::Zero(), Coefficients(q);
   P_.setZero();
@@ -105,8 +120,13 @@ Outcome PaperUkf::TakeImu(const ImuSample& sample) {
   if (!now_) Begin(sample.stamp - interval_);
   const double dt = std::min(ToSeconds(sample.stamp - *now_), kLongest_s);
   now_ = sample.stamp;
-  rate_B_ = imu_.T_BI.q * sample.gyro_rad_s;
-  const Eigen::Vector3d force_B = imu_.T_BI.q * sample.accel_m_s2;
+  if (StandsYet(sample.stamp)) {
+    standing_.Add(imu_.T_BI.q * sample.gyro_rad_s, imu_.T_BI.q * sample.accel_m_s2);
+    return Outcome::kUsed;
+  }
+  if (!aligned_) Align();
+  rate_B_ = imu_.T_BI.q * sample.gyro_rad_s - errors_.gyro_bias_rad_s;
+  const Eigen::Vector3d force_B = imu_.T_BI.q * sample.accel_m_s2 - errors_.accel_bias_m_s2;
   const Eigen::Quaterniond half = ukf::Exp(0.5 * dt * rate_B_);
   const Eigen::Vector3d gravity(0.0, 0.0, -kGravity_m_s2);
   Points points = SigmaPoints(nullptr);
@@ -158,11 +178,17 @@ Outcome PaperUkf::TakeFlow(const OpticalFlowSample& sample, Report& report) {
                      sample.integration > 0 && sample.quality >= kQuality && sample.range_m &&
                      std::isfinite(*sample.range_m) && *sample.range_m > 0.0;
   if (!sound || !now_ || *now_ - sample.stamp > kLatest) return Outcome::kUnusable;
+  const double integration_s = ToSeconds(sample.integration);
+  if (!aligned_) {
+    flow_turned_rad_ += sample.gyro_rad;
+    flow_stood_s_ += integration_s;
+    return Outcome::kUsed;
+  }
   const std::optional<OpticalFlowSample> before = std::exchange(ranged_, sample);
   if (!before || sample.stamp <= before->stamp) return Outcome::kUnusable;
   const double d = *sample.range_m;
-  const Eigen::Vector2d moved =
-      d / ToSeconds(sample.integration) * (sample.flow_rad - sample.gyro_rad.head<2>());
+  const Eigen::Vector2d turned = sample.gyro_rad.head<2>() - integration_s * flow_bias_rad_s_;
+  const Eigen::Vector2d moved = d / integration_s * (sample.flow_rad - turned);
   const double climb = (d - *before->range_m) / ToSeconds(sample.stamp - before->stamp);
   const Eigen::Vector3d v_F(moved.y(), -moved.x(), -climb);
   const Eigen::Vector3d measured = flow_.T_BF.q * v_F - rate_B_.cross(flow_.T_BF.p);
@@ -186,7 +212,7 @@ Outcome PaperUkf::TakeLight(const PolarizationSample& sample, Report& report) {
   const bool finite = std::all_of(sample.channel.begin(), sample.channel.end(),
                                   [](double c) { return std::isfinite(c); });
   const auto light = finite ? UsableLight(sample, sky_->options) : std::nullopt;
-  if (!light || frozen || !now_ || *now_ - sample.stamp > kLatest) return Outcome::kUnusable;
+  if (!light || frozen || !aligned_ || *now_ - sample.stamp > kLatest) return Outcome::kUnusable;
   const Eigen::Vector3d e_B = EVectorOf(*light, sky_->calibration);
   const Eigen::Vector3d sun_W = sky_->sun(sample.stamp);
   const double sun_azimuth = std::atan2(sun_W.x(), sun_W.y());

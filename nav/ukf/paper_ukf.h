@@ -7,7 +7,10 @@
 // 17-24]; quaternions are averaged as vectors and normalized.
 // As printed but for what a run needs: sensors that are not at B's origin have their lever arms
 // taken out, as the paper assumes done; a covariance that is not definite is mended.
-// Fails as it must: biases go into tilt and velocity, tilt into the heading; nothing is gated.
+// With start.standing_s it stands for so long first, as an inertial navigator is aligned: the mean
+// rates of both sensors' gyroscopes and what the force has beyond gravity are taken off all
+// readings after, and level is where the force points. The paper does not speak of it. Fails as it
+// must: biases go into tilt and velocity, tilt into the heading; nothing is gated.
 #pragma once
 
 #include <optional>
@@ -16,6 +19,7 @@
 #include "nav/api/estimate.h"
 #include "nav/api/measurements.h"
 #include "nav/ukf/options.h"
+#include "nav/ukf/standing.h"
 #include "nav/ukf/ukf.h"
 
 namespace polnav::nav {
@@ -37,6 +41,8 @@ class PaperUkf {
   using Points = Eigen::Matrix<double, kSize, kPoints>;
 
   [[nodiscard]] Outcome TakeImu(const ImuSample& sample);
+  [[nodiscard]] bool StandsYet(TimeNs stamp) const;
+  void Align();
   [[nodiscard]] Outcome TakeFlow(const OpticalFlowSample& sample, Report& report);
   [[nodiscard]] Outcome TakeLight(const PolarizationSample& sample, Report& report);
   void Begin(TimeNs stamp);
@@ -54,6 +60,15 @@ class PaperUkf {
   StartPrior start_;
   std::optional<SkySource> sky_;
   TimeNs interval_;
+
+  ukf::Standing standing_;
+  std::optional<TimeNs> began_;
+  bool aligned_ = false;
+  ukf::StandingErrors errors_;  // taken off the IMU's readings
+  // What the flow sensor's own gyroscopes turned while the robot stood, and in which time.
+  Eigen::Vector3d flow_turned_rad_ = Eigen::Vector3d::Zero();
+  double flow_stood_s_ = 0.0;
+  Eigen::Vector2d flow_bias_rad_s_ = Eigen::Vector2d::Zero();
 
   std::optional<TimeNs> now_;
   Vector x_ = Vector::Zero();

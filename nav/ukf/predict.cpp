@@ -11,10 +11,11 @@ namespace polnav::nav::ukf {
 namespace {
 
 constexpr double kFlicker_s = 30.0;
-constexpr double kTurn_s = 2.0;     // of a turn: crooked axes make it a tilt meanwhile
-constexpr double kShake_s = 0.05;   // of a step's shock
-constexpr int kCurved = 6;          // attitude and rate
-constexpr Eigen::Index kMoved = 9;  // theta, u, p: what an interval changes by more than a factor
+constexpr double kStep_s = 0.02;  // between two readings of the flow, the swing errs one way
+constexpr int kCurved = 6;           // attitude and rate
+constexpr Eigen::Index kMoved = 9;   // theta, u, p: what an interval changes by more than a factor
+constexpr Eigen::Index kLinear = 6;  // of these, what the curved directions leave: u, p
+constexpr Eigen::Index kStill = kSize - kMoved;
 
 using Moved = Eigen::Matrix<double, kMoved, 1>;
 
@@ -36,7 +37,7 @@ struct Interval {
 // Where a sigma point goes, relative to where the nominal state goes.
 Moved Carry(const Interval& i, const Error& e) {
   const Eigen::Vector3d rate =
-      i.rate - e.segment<3>(kGyroBias) - Eigen::Vector3d(0.0, 0.0, e(kGyroScale) * i.gyro_z);
+      i.rate - e.segment<3>(kGyroBias) - i.gyro_z * e.segment<3>(kGyroTurn);
   const Eigen::Quaterniond half_turn = Exp(0.5 * i.h * rate);
   const Eigen::Quaterniond start = Exp(e.segment<3>(kTheta));
   const Eigen::Quaterniond half = start * (i.q * half_turn);
@@ -50,27 +51,34 @@ Moved Carry(const Interval& i, const Error& e) {
   return moved;
 }
 
-// What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da.
-void CarryRest(const Eigen::Matrix3d& R_half, double h, Covariance& S) {
+using Rows = Eigen::Matrix<double, kLinear, kSize>;
+
+// What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da. Its
+// rows of u and p; theta has no rest, the others stay.
+Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half, double h,
+               const Covariance& P) {
   const Eigen::Matrix3d by_accel = h * R_half;
-  const Eigen::Matrix<double, kSize, 3> by = S.middleCols<3>(kAccelBias) * by_accel.transpose();
-  S.middleCols<3>(kPosition) += h * S.middleCols<3>(kVelocity) - 0.5 * h * by;
-  S.middleCols<3>(kVelocity) -= by;
-  for (Eigen::Index j = 0; j < kSize; ++j) {
-    auto column = S.col(j);
-    const Eigen::Vector3d at = by_accel * column.segment<3>(kAccelBias);
-    column.segment<3>(kPosition) += h * column.segment<3>(kVelocity) - 0.5 * h * at;
-    column.segment<3>(kVelocity) -= at;
-  }
+  Rows rest = P.middleRows<kLinear>(kVelocity);
+  rest.noalias() -= columns.middleRows<kLinear>(kVelocity) * columns.transpose();
+  Eigen::Matrix<double, 3, kSize> accel = P.middleRows<3>(kAccelBias);
+  accel.noalias() -= columns.middleRows<3>(kAccelBias) * columns.transpose();
+  const Eigen::Matrix<double, 3, kSize> gained = by_accel * accel;
+  rest.bottomRows<3>() += h * rest.topRows<3>() - 0.5 * h * gained;
+  rest.topRows<3>() -= gained;
+  // The same from the other side.
+  const Eigen::Matrix<double, kLinear, 3> aside =
+      rest.middleCols<3>(kAccelBias) * by_accel.transpose();
+  rest.middleCols<3>(kPosition) += h * rest.middleCols<3>(kVelocity) - 0.5 * h * aside;
+  rest.middleCols<3>(kVelocity) -= aside;
+  return rest;
 }
 
-void AddNoise(const Interval& i, const Eigen::Vector3d& acceleration, const ProcessNoise& n,
-              Covariance& P) {
-  const double tilt = n.gyro_rad2_s + n.tilt_by_turn2_s * Square(i.rate.z());
+void AddNoise(const Interval& i, const ProcessNoise& n, Covariance& P) {
   auto diagonal = P.diagonal();
-  diagonal.segment<2>(kTheta).array() += i.h * tilt;
-  diagonal(kTheta + 2) += i.h * n.gyro_rad2_s;
-  const double accel = n.accel_m2_s3 + n.accel_by_accel2_s * acceleration.squaredNorm();
+  diagonal.segment<3>(kTheta).array() += i.h * n.gyro_rad2_s;
+  // Beside gravity of a level robot, whose share is in the biases.
+  const Eigen::Vector3d swing = i.force - Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
+  const double accel = n.accel_m2_s3 + n.accel_by_swing2_s * swing.squaredNorm();
   for (Eigen::Index k = 0; k < 3; ++k) {
     P(kVelocity + k, kVelocity + k) += i.h * accel;
     P(kPosition + k, kPosition + k) += 0.25 * i.h * i.h * i.h * accel;
@@ -91,34 +99,39 @@ void Forget(double keep, Index at, State& state) {
 }
 
 // The curved directions: attitude, then rate.
-Columns<kCurved> TakeCurved(double gyro_z, Covariance& P) {
-  Columns<kCurved> columns;
-  for (int k = 0; k < 3; ++k) TakeColumn(kTheta + k, P, columns.col(k));
-  TakeColumn(kGyroBias, P, columns.col(3));
-  TakeColumn(kGyroBias + 1, P, columns.col(4));
-  TakeColumn(kGyroBias + 2, kGyroScale, gyro_z, P, columns.col(5));
-  return columns;
+Columns<kCurved> TakeCurved(double gyro_z, const Covariance& P) {
+  return TakeColumns<kCurved>({{{kTheta},
+                                {kTheta + 1},
+                                {kTheta + 2},
+                                {kGyroBias, kGyroTurn, gyro_z},
+                                {kGyroBias + 1, kGyroTurn + 1, gyro_z},
+                                {kGyroBias + 2, kGyroTurn + 2, gyro_z}}},
+                              P);
 }
 
-// Adds the curved directions' points to what the others make of P; returns the mean's shift.
-Moved Gather(const Interval& i, const Columns<kCurved>& columns, Covariance& P) {
+// Puts together what the curved directions' points and the rest make of P; returns the mean's
+// shift. What an interval does not move keeps its covariance.
+Moved Gather(const Interval& i, const Columns<kCurved>& columns, const Rows& rest, Covariance& P) {
   const double spread = std::sqrt(static_cast<double>(kCurved));
-  std::array<Moved, kCurved> even;
-  Moved mean = Moved::Zero();
+  Eigen::Matrix<double, kMoved, kCurved> odd;
+  Eigen::Matrix<double, kMoved, kCurved> even;
   for (int k = 0; k < kCurved; ++k) {
-    Error column = columns.col(k);
-    const Error point = spread * column;
+    const Error point = spread * columns.col(k);
     const Moved plus = Carry(i, point);
     const Moved minus = Carry(i, -point);
-    even[k] = 0.5 * (plus + minus);
-    mean += even[k] / kCurved;
-    column.head<kMoved>() = 0.5 / spread * (plus - minus);
-    P.noalias() += column * column.transpose();
+    odd.col(k) = 0.5 / spread * (plus - minus);
+    even.col(k) = 0.5 * (plus + minus);
   }
-  for (const Moved& e : even) {
-    const Moved off = (e - mean) / spread;
-    P.topLeftCorner<kMoved, kMoved>().noalias() += off * off.transpose();
-  }
+  const Moved mean = even.rowwise().mean();
+  const Eigen::Matrix<double, kMoved, kCurved> off = (even.colwise() - mean) / spread;
+  Eigen::Matrix<double, kMoved, kMoved> moved = odd * odd.transpose();
+  moved.noalias() += off * off.transpose();
+  moved.bottomRightCorner<kLinear, kLinear>() += rest.middleCols<kLinear>(kVelocity);
+  Eigen::Matrix<double, kMoved, kStill> across = odd * columns.bottomRows<kStill>().transpose();
+  across.bottomRows<kLinear>() += rest.rightCols<kStill>();
+  P.topLeftCorner<kMoved, kMoved>() = 0.5 * (moved + moved.transpose());
+  P.topRightCorner<kMoved, kStill>() = across;
+  P.bottomLeftCorner<kStill, kMoved>() = across.transpose();
   return mean;
 }
 
@@ -132,8 +145,7 @@ ProcessNoise NoiseOf(const ImuCalibration& imu, const UkfOptions& options, doubl
                                Square(imu.gyro_bias_instability_rad_s) / kFlicker_s,
           .accel_bias_m2_s5 = Square(imu.accel_bias_walk_m_s2_sqrt_s) +
                               Square(imu.accel_bias_instability_m_s2) / kFlicker_s,
-          .tilt_by_turn2_s = Square(crooked) * kTurn_s,
-          .accel_by_accel2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kShake_s,
+          .accel_by_swing2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kStep_s,
           .terrain_m2_m = Square(options.terrain_sigma_m_sqrt_m),
           .sky_time_s = std::max(sky_time_s, 1e-3)};
 }
@@ -145,8 +157,7 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
              .h = h_s,
              .q = state.q_WI,
              .v = state.v_WI};
-  i.rate = gyro_rad_s - state.gyro_bias -
-           Eigen::Vector3d(0.0, 0.0, state.Slow(kGyroScale) * gyro_rad_s.z());
+  i.rate = gyro_rad_s - state.gyro_bias - gyro_rad_s.z() * state.GyroTurn();
   const Eigen::Quaterniond half_turn = Exp(0.5 * h_s * i.rate);
   const Eigen::Quaterniond half = i.q * half_turn;
   const Eigen::Vector3d acceleration = half * i.force + kGravity_W;
@@ -154,10 +165,10 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
   i.v_next = i.v + h_s * acceleration;
 
   const Columns<kCurved> columns = TakeCurved(i.gyro_z, state.P);
-  CarryRest(half.toRotationMatrix(), h_s, state.P);
+  const Rows rest = CarryRest(columns, half.toRotationMatrix(), h_s, state.P);
   Error shift = Error::Zero();
-  shift.head<kMoved>() = Gather(i, columns, state.P);
-  AddNoise(i, acceleration, noise, state.P);
+  shift.head<kMoved>() = Gather(i, columns, rest, state.P);
+  AddNoise(i, noise, state.P);
 
   state.stamp = stamp;
   state.q_WI = i.q_next;

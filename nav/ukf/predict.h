@@ -1,7 +1,7 @@
 // Where does the IMU say that the robot goes, and how sure is that?
 //
 // Readings are means over the interval, the force seen from the attitude half way (docs/imu.md):
-//   w = gyro - gyro_bias - scale,  q' = q Exp(w h)
+//   w = gyro - gyro_bias - gyro_z turn,  q' = q Exp(w h)
 //   v' = v + h (q Exp(w h / 2) (accel - accel_bias) + g),  p' = p + h (v + v') / 2
 // Curved along the attitude's error and that of the rate; linear, and so exact without sigma
 // points, along all others (sigma_points.h).
@@ -19,11 +19,12 @@ struct ProcessNoise {
   double accel_m2_s3 = 0.0;
   double gyro_bias_rad2_s3 = 0.0;
   double accel_bias_m2_s5 = 0.0;
-  // Errors in proportion to what is read, and how long they act in one direction.
-  double tilt_by_turn2_s = 0.0;    // (rad/s of tilt a rad/s of turn)^2 s
-  double accel_by_accel2_s = 0.0;  // likewise
-  double terrain_m2_m = 0.0;       // a metre of the way
-  double sky_time_s = 1.0;         // correlation of the sky's slow errors
+  // Errors in proportion to how the force swings with the steps, and how long they act in one
+  // direction. They come again with every step: if the filter took the velocity through a step from
+  // the accelerometers rather than from the flow, their scale would become the walk's.
+  double accel_by_swing2_s = 0.0;
+  double terrain_m2_m = 0.0;  // a metre of the way
+  double sky_time_s = 1.0;    // correlation of the sky's slow errors
 };
 
 // Flicker of the biases counts as a random walk that reaches it in half a minute.

@@ -17,32 +17,45 @@
 
 namespace polnav::nav::ukf {
 
-// Columns of the square root, one a direction; P keeps what they leave.
+// Columns of the square root, one a direction.
 template <int K>
 using Columns = Eigen::Matrix<double, kSize, K>;
 
-// The direction is a functional of the error: of it, P a is its covariance with all and a . P a its
-// variance. A variance that is none (lost to rounding) gives an empty column.
-inline void TakeColumn(const Error& p_a, double variance, Covariance& P, Eigen::Ref<Error> column) {
-  if (!(variance > 0.0)) {
-    column.setZero();
-    return;
+// A functional of the error: its element i and, where there is one, `factor` times element j.
+struct Direction {
+  Eigen::Index i;
+  Eigen::Index j = -1;
+  double factor = 0.0;
+
+  template <typename Column>
+  [[nodiscard]] double Of(const Column& error) const {
+    return j < 0 ? error(i) : error(i) + factor * error(j);
   }
-  column = p_a / std::sqrt(variance);
-  P.noalias() -= column * column.transpose();
-}
+};
 
-inline void TakeColumn(Eigen::Index i, Covariance& P, Eigen::Ref<Error> column) {
-  const Error p_a = P.col(i);
-  TakeColumn(p_a, P(i, i), P, column);
-}
-
-// Of the sum of element i and `factor` times element j.
-inline void TakeColumn(Eigen::Index i, Eigen::Index j, double factor, Covariance& P,
-                       Eigen::Ref<Error> column) {
-  const Error p_a = P.col(i) + factor * P.col(j);
-  const double variance = p_a(i) + factor * p_a(j);
-  TakeColumn(p_a, variance, P, column);
+// Each column is the direction's covariance with all, less what those before it explain, over its
+// sigma. A variance that is none (lost to rounding) gives an empty column.
+template <int K>
+[[nodiscard]] Columns<K> TakeColumns(const std::array<Direction, K>& directions,
+                                     const Covariance& P) {
+  constexpr double kRounding = 1e-13;  // of a variance
+  Columns<K> columns;
+  for (int k = 0; k < K; ++k) {
+    const Direction& d = directions[k];
+    Error column = P.col(d.i);
+    if (d.j >= 0) column += d.factor * P.col(d.j);
+    const double whole = d.Of(column);
+    for (int before = 0; before < k; ++before) {
+      column -= d.Of(columns.col(before)) * columns.col(before);
+    }
+    const double variance = d.Of(column);
+    if (variance > kRounding * whole && whole > 0.0) {
+      columns.col(k) = column / std::sqrt(variance);
+    } else {
+      columns.col(k).setZero();
+    }
+  }
+  return columns;
 }
 
 // What a measurement of Z numbers is expected to be.
@@ -53,18 +66,21 @@ struct Expected {
   Eigen::Matrix<double, kSize, Z> covariance_with_state;
 };
 
-// h: error -> measurement, curved along the columns' directions alone; H: its derivative along the
-// others, left: what of P the columns leave.
+// h: error -> measurement, curved along the directions alone; H: its derivative along the others.
 template <int Z, int K, typename Model>
 [[nodiscard]] Expected<Z> Expect(const Model& h, const Eigen::Matrix<double, Z, kSize>& H,
-                                 const Columns<K>& columns, const Covariance& left) {
+                                 const std::array<Direction, K>& directions, const Covariance& P) {
   using Vector = Eigen::Matrix<double, Z, 1>;
   const Vector centre = h(Error::Zero());
   const double spread = std::sqrt(static_cast<double>(K));
+  const Columns<K> columns = TakeColumns<K>(directions, P);
   std::array<Vector, K> even;
   Vector mean = Vector::Zero();
   Expected<Z> expected;
-  expected.covariance_with_state.noalias() = left * H.transpose();
+  // What the columns leave of P, carried by the linear part.
+  const Eigen::Matrix<double, K, Z> taken = columns.transpose() * H.transpose();
+  expected.covariance_with_state.noalias() = P * H.transpose();
+  expected.covariance_with_state.noalias() -= columns * taken;
   expected.covariance.noalias() = H * expected.covariance_with_state;
   for (int k = 0; k < K; ++k) {
     const Error point = spread * columns.col(k);

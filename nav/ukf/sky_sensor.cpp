@@ -26,9 +26,6 @@ double AxisOf(const State& state, const Eigen::Quaterniond& q_IS, const Eigen::V
 
 Expected<1> ExpectSky(const State& state, const Eigen::Quaterniond& q_IS,
                       const SkyReading& reading) {
-  Covariance left = state.P;
-  Columns<3> columns;
-  for (int k = 0; k < 3; ++k) TakeColumn(kTheta + k, left, columns.col(k));
   Eigen::Matrix<double, 1, kSize> H = Eigen::Matrix<double, 1, kSize>::Zero();
   H(kSkySlow) = reading.slow_rad;
   H(kSkyForeign) = reading.foreign_rad;
@@ -41,7 +38,7 @@ Expected<1> ExpectSky(const State& state, const Eigen::Quaterniond& q_IS,
     const double axis = AxisOf(state, q_IS, reading.sun_W, e);
     return Eigen::Matrix<double, 1, 1>(WrapPi(axis - nominal) + known + H.dot(e));
   };
-  return Expect<1, 3>(h, H, columns, left);
+  return Expect<1, 3>(h, H, {{{kTheta}, {kTheta + 1}, {kTheta + 2}}}, state.P);
 }
 
 }  // namespace polnav::nav::ukf

@@ -69,11 +69,16 @@ State StartState(const UkfOptions& options, const ImuCalibration& imu,
   variance.segment<3>(kAccelBias) =
       FakedAccelBias(options).cwiseAbs2().array() + Square(imu.accel_bias_sigma_m_s2);
   variance(kTerrain) = Square(kUnknownGround_m);
-  variance(kGyroScale) = Square(options.gyro_scale_sigma);
+  const double crooked = DegToRad(options.misalignment_sigma_deg);
+  variance.segment<2>(kGyroTurn).setConstant(Square(crooked));
+  variance(kGyroTurn + 2) = Square(options.gyro_scale_sigma);
+  const double along = Square(options.gyro_scale_sigma) + Square(flow.flow_scale_sigma) +
+                       Square(options.range_scale_sigma);
+  const double across = Square(crooked) + Square(flow.mount_sigma_rad);
+  variance.segment<4>(kFlowTurn) << along, across, across, along;
   variance(kSkySlow) = variance(kSkyForeign) = 1.0;
   variance(kFlowScale) = Square(flow.flow_scale_sigma) + Square(options.range_scale_sigma);
-  variance(kFlowYaw) =
-      Square(flow.mount_sigma_rad) + Square(DegToRad(options.misalignment_sigma_deg));
+  variance(kFlowYaw) = across;
   variance(kSkyOffset) = Square(DegToRad(options.sky_offset_sigma_deg));
   Covariance by = Covariance::Identity();  // IMU's position by the body's
   by.block<3, 3>(kPosition, kTheta) = -Skew(lever_W);

@@ -1,7 +1,7 @@
 // What does the filter of a walking robot know, and in which coordinates does it err?
 //
 //   I     the IMU's axes and origin; the nominal state is a point on the manifold
-//   error (22): truth = nominal moved by it, all in W unless said otherwise
+//   error (28): truth = nominal moved by it, all in W unless said otherwise
 //     theta    q_true = Exp(theta) q                  [rad]
 //     u        v_true = Exp(theta) (v + u)            [m/s]
 //     p        p_true = p + dp                        [m]
@@ -26,19 +26,23 @@ enum Index : Eigen::Index {
   kGyroBias = 9,
   kAccelBias = 12,
   // Slow ones.
-  kTerrain = 15,     // height of the ground below the sensor, in W [m]
-  kGyroScale = 16,   // of the upward gyroscope: a turn of w reads (1 + it) w
-  kSkySlow = 17,     // sky's slow error, in sigmas
-  kSkyForeign = 18,  // error that light from elsewhere makes, in sigmas
+  kTerrain = 15,  // height of the ground below the sensor, in W [m]
+  // What an upward turn of 1 rad/s adds to each gyroscope's reading, as axes lean and scales err.
+  kGyroTurn = 16,
+  // What the flow sees of the robot's own turn beyond what the gyroscopes make of it: by rows, per
+  // flow that turns about F's x and y make.
+  kFlowTurn = 19,
+  kSkySlow = 23,     // sky's slow error, in sigmas
+  kSkyForeign = 24,  // error that light from elsewhere makes, in sigmas
   // Considered: they widen every covariance they touch, and no measurement moves them.
-  kFlowScale = 19,  // flow and range together, relative
-  kFlowYaw = 20,    // turn of F about its optical axis [rad]
-  kSkyOffset = 21,  // of a reading of the sky [rad]
-  kSize = 22
+  kFlowScale = 25,  // of the velocity that flow and range make together, relative
+  kFlowYaw = 26,    // its turn about the optical axis [rad]
+  kSkyOffset = 27,  // of a reading of the sky [rad]
+  kSize = 28
 };
 inline constexpr Eigen::Index kNavigation = 15;  // the first: position, motion and biases
 inline constexpr Eigen::Index kSlow = kSize - kNavigation;
-inline constexpr Eigen::Index kEstimated = 19;  // what measurements move
+inline constexpr Eigen::Index kEstimated = 25;  // what measurements move
 
 using Error = Eigen::Matrix<double, kSize, 1>;
 using Covariance = Eigen::Matrix<double, kSize, kSize>;
@@ -57,7 +61,10 @@ struct State {
   Eigen::Vector3d gained_m = Eigen::Vector3d::Zero();    // integral of that over time
   Covariance P = Covariance::Zero();
 
-  [[nodiscard]] double Slow(Index i) const { return slow(i - kNavigation); }
+  [[nodiscard]] double Slow(Eigen::Index i) const { return slow(i - kNavigation); }
+  [[nodiscard]] Eigen::Vector3d GyroTurn() const {
+    return slow.segment<3>(kGyroTurn - kNavigation);
+  }
 };
 
 // Rotations of sigma points are small: a series to the ninth power below a quarter of a radian.

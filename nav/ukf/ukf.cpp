@@ -24,6 +24,15 @@ constexpr TimeNs kPatience = kNsPerSecond / 10;  // with an IMU that says nothin
 constexpr std::size_t kMostWaiting = 64;
 constexpr double kSeen_s = 1.0;  // the ground, or the robot is not tracked
 
+// Once the speed is known, where the robot is follows from flow through the velocity alone.
+constexpr double kKnownSpeed_m_s = 0.02;
+constexpr ukf::Kept kWay{.first = ukf::kPosition, .count = 2};
+
+bool KnowsSpeed(const State& state) {
+  return state.P.diagonal().segment<2>(ukf::kVelocity).maxCoeff() <
+         kKnownSpeed_m_s * kKnownSpeed_m_s;
+}
+
 // Without an IMU it may do anything that a walking robot does: 0.3 rad/s and 1 m/s^2 that last for
 // a quarter of a second.
 constexpr double kBlindGyro_rad2_s = 0.09 * 0.5;
@@ -282,7 +291,8 @@ Outcome Ukf::RunFlow(std::size_t place, const OpticalFlowSample& sample, Report*
       Eigen::Matrix2d::Identity();
   const double range = ukf::RangeOf(entry.after, ground_, Error::Zero());
   const ukf::Correction done =
-      ukf::Correct<2>(expected, residual, noise, options_.gate_sigmas, entry.after);
+      ukf::Correct<2>(expected, residual, noise, options_.gate_sigmas, entry.after,
+                      KnowsSpeed(entry.after) ? kWay : ukf::Kept{});
   if (!done.usable) return Outcome::kUnusable;
   if (report) {
     if (!done.gated) seen_ = sample.stamp;

@@ -22,7 +22,7 @@ nav::OpticalFlowCalibration NominalOpticalFlow(const OpticalFlowOptions& options
           .flow_noise_rad_s_sqrt_hz = TypicalFlowNoise(options),
           .flow_scale_sigma = options.focal_sigma,
           .mount_sigma_rad = nav::DegToRad(options.mount_error_sigma_deg),
-          .range_sigma_m = std::hypot(options.range_sigma_m, options.range_bias_sigma_m),
+          .range_sigma_m = options.range_sigma_m,
           .range_min_m = options.range_min_m,
           .range_max_m = options.range_max_m};
 }

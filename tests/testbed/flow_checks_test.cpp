@@ -44,6 +44,10 @@ TEST(FlowChecks, RefusesASensorOutOfItsRange) {
       ErrorOf("position_m: [0, 0, -0.9]", "vehicle: {turntable: {position_m: [0, 0, 1]}}\n"),
       "s.yaml:3: sensors.optical_flow.position_m: the sensor is 0.1 m above the ground, below "
       "range_min_m, 0.3 m");
+  EXPECT_EQ(ErrorOf("position_m: [0.2, 0, 0.1]", "vehicle: {hexapod: {}}\n"),
+            "s.yaml:3: sensors.optical_flow.position_m: the sensor is 0.185 m above the ground, "
+            "below range_min_m, 0.3 m");
+  EXPECT_EQ(ErrorOf("position_m: [0.2, 0, 0.3]", "vehicle: {hexapod: {}}\n"), "no error");
   EXPECT_NE(ErrorOf("range_max_m: -1").find("out of range"), std::string::npos);
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "nav/api/time.h"
 
 namespace polnav::testbed {
@@ -22,6 +24,13 @@ void CheckFlowRates(const YamlDocument& document, const sim::OpticalFlowOptions&
   }
 }
 
+// Of B above the ground, where the vehicle says; any other's is at least on it.
+std::optional<double> BodyHeight(const sim::VehicleOptions& vehicle) {
+  if (vehicle.turntable) return vehicle.turntable->position_m.z();
+  if (vehicle.hexapod) return vehicle.hexapod->gait.body_height_m;
+  return std::nullopt;
+}
+
 }  // namespace
 
 void CheckFlow(const YamlDocument& document, const Scenario& scenario) {
@@ -32,15 +41,14 @@ void CheckFlow(const YamlDocument& document, const Scenario& scenario) {
     FailAt(document, "sensors.optical_flow.range_min_m",
            fmt::format("{} m is not below range_max_m, {} m", flow.range_min_m, flow.range_max_m));
   }
-  // A turntable's B is so high above the ground; any other vehicle's is at least on it.
-  const auto& turntable = scenario.vehicle.turntable;
-  const double height_m = flow.position_m.z() + (turntable ? turntable->position_m.z() : 0.0);
+  const std::optional<double> body_m = BodyHeight(scenario.vehicle);
+  const double height_m = flow.position_m.z() + body_m.value_or(0.0);
   if (height_m > flow.range_max_m) {
     FailAt(document, "sensors.optical_flow.position_m",
            fmt::format("the sensor is {:.4g} m or more above the ground, beyond range_max_m, {} m",
                        height_m, flow.range_max_m));
   }
-  if (turntable && height_m < flow.range_min_m) {
+  if (body_m && height_m < flow.range_min_m) {
     FailAt(document, "sensors.optical_flow.position_m",
            fmt::format("the sensor is {:.4g} m above the ground, below range_min_m, {} m", height_m,
                        flow.range_min_m));

@@ -37,7 +37,8 @@ nav::StartPrior GrantStart(const StartOptions& start, const sim::Truth& truth,
   sim::RandomStream::Sample draw = sim::RandomStream(key.seed, key.trial, "estimators/start").At(0);
   nav::StartPrior prior{.position_sigma_m = start.position_sigma_m,
                         .heading_sigma_rad = nav::DegToRad(start.heading_sigma_deg),
-                        .level_sigma_rad = nav::DegToRad(start.level_sigma_deg)};
+                        .level_sigma_rad = nav::DegToRad(start.level_sigma_deg),
+                        .standing_s = start.standing_s};
   prior.heading_rad = nav::CompassHeading(truth.T_WB.q) + prior.heading_sigma_rad * draw.Gaussian();
   for (int i = 0; i < 3; ++i) {
     prior.p_WB_m(i) = truth.T_WB.p(i) + prior.position_sigma_m * draw.Gaussian();

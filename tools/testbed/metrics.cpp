@@ -45,8 +45,8 @@ Json ToJson(const Statistics& s) {
 }
 
 Json ToJson(const HeadingScore& h) {
-  return {
-      {"mean_abs", h.mean_abs}, {"mean", h.mean}, {"rmse", h.rmse}, {"std", h.std}, {"max", h.max}};
+  return {{"mean_abs", h.mean_abs}, {"mean", h.mean}, {"rmse", h.rmse},
+          {"std", h.std},           {"max", h.max},   {"last", h.last}};
 }
 
 Json ToJson(const EstimatorScore& score) {
@@ -60,6 +60,7 @@ Json ToJson(const EstimatorScore& score) {
   if (score.position_m) {
     json["position_m"] = ToJson(score.position_m->error);
     json["position_m"]["horizontal_rmse"] = score.position_m->horizontal_rmse;
+    json["position_m"]["last"] = score.position_m->last;
   }
   json["drift_percent"] = score.drift_percent ? Json(*score.drift_percent) : Json(nullptr);
   json["nees"] = nullptr;

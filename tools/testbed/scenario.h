@@ -25,12 +25,16 @@ struct StartOptions {
   double position_sigma_m = 0.01;
   double heading_sigma_deg = 0.5;
   double level_sigma_deg = 1.0;  // of the assumption that the vehicle starts level
+  // It stands for so long first, and estimators may trust in that: ukf_paper takes the IMU's mean
+  // readings off those after. The vehicle has to be told as well: its walk's start_delay_s.
+  double standing_s = 0.0;
 
   template <typename Visitor>
   void Visit(Visitor& v) {
     v("position_sigma_m", position_sigma_m, {.min = 1e-4, .max = 1000.0});
     v("heading_sigma_deg", heading_sigma_deg, {.min = 1e-3, .max = 180.0});
     v("level_sigma_deg", level_sigma_deg, {.min = 1e-3, .max = 45.0});
+    v("standing_s", standing_s, {.min = 0.0, .max = 3600.0});
   }
 };
 

@@ -84,7 +84,8 @@ void ScorePositions(const std::vector<PosePair>& pairs, const ErrorSeries& serie
   score.rpe_20m = ScoreRpe(pairs, 20.0);
   score.rpe_100m = ScoreRpe(pairs, kDriftDistance_m);
   if (score.rpe_100m) score.drift_percent = score.rpe_100m->trans_m.mean / kDriftDistance_m * 100.0;
-  score.position_m = {Summarize(series.position_m), Summarize(series.horizontal_m).rmse};
+  score.position_m = {Summarize(series.position_m), Summarize(series.horizontal_m).rmse,
+                      series.position_m.back()};
 }
 
 }  // namespace
@@ -120,7 +121,8 @@ HeadingScore ScoreHeading(const std::vector<double>& signed_errors) {
           .mean = s.mean,
           .rmse = s.rmse,
           .std = s.std,
-          .max = std::max(std::abs(s.min), std::abs(s.max))};
+          .max = std::max(std::abs(s.min), std::abs(s.max)),
+          .last = std::abs(signed_errors.back())};
 }
 
 std::optional<EstimatorScore> Score(const Trajectory& truth,

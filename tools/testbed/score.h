@@ -47,8 +47,9 @@ struct HeadingScore {
   double mean_abs = 0.0;
   double mean = 0.0;  // signed
   double rmse = 0.0;
-  double std = 0.0;  // of the signed error
-  double max = 0.0;  // of the magnitude
+  double std = 0.0;   // of the signed error
+  double max = 0.0;   // of the magnitude
+  double last = 0.0;  // of the magnitude, at the end of the run
 };
 
 [[nodiscard]] HeadingScore ScoreHeading(const std::vector<double>& signed_errors);
@@ -56,6 +57,7 @@ struct HeadingScore {
 struct PositionScore {
   Statistics error;
   double horizontal_rmse = 0.0;
+  double last = 0.0;  // at the end of the run: what a closed path fails to close by
 };
 
 // Mean normalized estimation error squared: 3 (position) and 1 (heading) when honest, larger when
