@@ -109,7 +109,7 @@ CLI::App* AddReport(CLI::App& app, ReportArguments& a) {
   report->add_option("PATH", a.path, "Result file of a study, or folder of a run")->required();
   report->add_option("--out", a.out, "HTML file (default: beside the result file)");
   report->add_option("--csv", a.csv, "Write trial,case,sample,estimator,metric,value");
-  report->add_flag("--quiet", a.quiet, "Print nothing");
+  report->add_flag("--quiet", a.quiet, "Print nothing but failures");
   report->add_flag("--json", a.json, "Print all statistics as JSON instead of the table");
   return report;
 }

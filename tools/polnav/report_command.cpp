@@ -48,6 +48,8 @@ int ReportStudy(const ReportArguments& arguments, const fs::path& path, const Co
     console.out << aggregate.dump(2) << "\n";
   } else if (!arguments.quiet) {
     console.out << StudySummary(aggregate) << html.string() << "\n";
+  } else {
+    console.err << StudyCriteriaText(aggregate, true);
   }
   return AllCriteriaHold(aggregate) ? kExitHolds : kExitCriterionFailed;
 }

@@ -7,6 +7,7 @@
 
 #include "tools/polnav/console.h"
 #include "tools/testbed/report/study_report.h"
+#include "tools/testbed/study/study_stop.h"
 
 namespace polnav::testbed {
 namespace {
@@ -44,6 +45,18 @@ std::string CaseText(const Json& c) {
 
 }  // namespace
 
+std::string StudyCriteriaText(const Json& aggregate, bool only_failures) {
+  std::string text;
+  for (const Json& c : aggregate["criteria"]) {
+    if (only_failures && c["passed"].get<bool>()) continue;
+    text += fmt::format("{}  {} [{}]: expected {}, got {} of {} values\n",
+                        c["passed"].get<bool>() ? "holds" : "FAILS", c["name"].get<std::string>(),
+                        c["case"].get<std::string>(), c["expected"].get<std::string>(),
+                        IntervalText(c["actual"]), c["n"].dump());
+  }
+  return text;
+}
+
 std::string StudySummary(const Json& aggregate, std::size_t most_cases) {
   std::string text = fmt::format("{}: {} trials{}; means over trials with 95 % intervals\n",
                                  aggregate["study"].get<std::string>(), aggregate["trials"].dump(),
@@ -56,13 +69,8 @@ std::string StudySummary(const Json& aggregate, std::size_t most_cases) {
   if (aggregate["cases"].size() > most_cases) {
     text += fmt::format("and {} more cases\n", aggregate["cases"].size() - most_cases);
   }
-  for (const Json& c : aggregate["criteria"]) {
-    text += fmt::format("{}  {} [{}]: expected {}, got {} of {} values\n",
-                        c["passed"].get<bool>() ? "holds" : "FAILS", c["name"].get<std::string>(),
-                        c["case"].get<std::string>(), c["expected"].get<std::string>(),
-                        IntervalText(c["actual"]), c["n"].dump());
-  }
-  return text;
+  text += StopText(aggregate["stop"]);
+  return text + StudyCriteriaText(aggregate, false);
 }
 
 }  // namespace polnav::testbed

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "tools/testbed/report/sections.h"
 #include "tools/testbed/report/study_report.h"
 #include "tools/testbed/study/aggregate.h"
+#include "tools/testbed/study/study_stop.h"
 
 namespace polnav::testbed {
 namespace {
@@ -99,6 +101,30 @@ std::string StudyHeader(const StudyTable& table, const Json& aggregate) {
          "</div><p class=\"soft small\">In brackets: 95 % intervals. " +
          EscapeMarkup(table.Meta("polnav_version")) + ", identity <code>" +
          EscapeMarkup(table.Meta("identity").substr(0, 16)) + "</code></p>";
+}
+
+std::string StudyStopSection(const Json& aggregate) {
+  const Json& stop = aggregate["stop"];
+  if (stop.is_null()) return "";
+  HtmlTable table{.rows = {{"what", "case", "value", "trials", "known to within", "asked", ""}},
+                  .text_columns = true};
+  for (const Json& c : stop["checks"]) {
+    const double scale = c["relative"].get<bool>() ? 100.0 : 1.0;
+    const auto width = [&](const char* key) -> std::string {
+      if (c[key].is_null()) return "–";
+      return fmt::format("{:.4g}{}", scale * c[key].get<double>(),
+                         c["relative"].get<bool>() ? " %" : "");
+    };
+    table.rows.push_back({c["what"].get<std::string>(), c["case"].get<std::string>(),
+                          IntervalText(c["actual"]), c["n"].dump(), width("half_width"),
+                          width("asked"), c["known"].get<bool>() ? "known" : "not yet"});
+  }
+  std::string why = StopText(stop);
+  why = why.substr(0, why.find('\n'));
+  why.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(why.front())));
+  if (why.ends_with(':')) why.back() = '.';
+  return "<section><h2>Why it stopped</h2><p>" + EscapeMarkup(why) + "</p>" +
+         (table.rows.size() > 1 ? table.Html() : "") + "</section>";
 }
 
 std::string StudyCriteriaSection(const Json& aggregate) {

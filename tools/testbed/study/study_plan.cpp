@@ -57,6 +57,7 @@ StudyPlan::StudyPlan(YamlDocument document, const std::filesystem::path& folder)
   for (std::size_t i = 0; i < cases_.size(); ++i) CheckCase(cases_[i], i);
   CheckRanges();
   CheckStudyCriteria(document_, options_.criteria, cases_);
+  CheckStudyStop(document_, options_, cases_);
   BuildIdentity();
 }
 

@@ -25,7 +25,7 @@ struct StudyRunOptions {
 
 // Of this process's share.
 struct StudyCounts {
-  std::uint64_t total = 0;
+  std::uint64_t total = 0;    // with `stop`, at most; when it has ended, those that count
   std::uint64_t done = 0;     // in the file or about to be
   std::uint64_t resumed = 0;  // of them, were there at the start
   std::uint64_t failed = 0;   // of those run now, not ok
