@@ -44,6 +44,9 @@ int ReportStudy(const ReportArguments& arguments, const fs::path& path, const Co
   if (!arguments.csv.empty()) {
     WriteFile(arguments.csv, [&](std::ostream& out) { WriteCsv(table, out); });
   }
+  if (!arguments.summary_csv.empty()) {
+    WriteFile(arguments.summary_csv, [&](std::ostream& out) { WriteSummaryCsv(aggregate, out); });
+  }
   if (arguments.json) {
     console.out << aggregate.dump(2) << "\n";
   } else if (!arguments.quiet) {

@@ -57,6 +57,7 @@ int RunAll(const StudyArguments& arguments, const StudyPlan& plan, const Shard& 
                {.jobs = arguments.jobs.value_or(ProcessorCount()),
                 .shard = shard,
                 .retry_failed = arguments.retry_failed,
+                .mix_builds = arguments.mix_builds,
                 .out = out,
                 .study_file = arguments.study},
                closed_loop, [&](const StudyCounts& counts) { progress.Show(counts); });

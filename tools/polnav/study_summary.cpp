@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "tools/polnav/console.h"
 #include "tools/testbed/report/study_report.h"
@@ -19,6 +20,19 @@ std::string MetricText(const Json& of, const std::string& metric, const char* st
   return IntervalText(of["metrics"][metric][statistic]);
 }
 
+// By label: RMSE of heading and of position, of a paper's one run.
+std::map<std::string, std::array<std::string, 2>> PaperRows(const Json& paper) {
+  std::map<std::string, std::array<std::string, 2>> rows;
+  for (const std::size_t k : {0U, 1U}) {
+    if (!paper.contains(kShown[k])) continue;
+    for (const Json& figure : paper[kShown[k]]) {
+      rows[figure["label"].get<std::string>()][k] =
+          fmt::format("{:g}", figure["value"].get<double>());
+    }
+  }
+  return rows;
+}
+
 std::string CaseText(const Json& c) {
   std::string outcomes;
   for (const auto& [outcome, count] : c["outcomes"].items()) {
@@ -30,6 +44,9 @@ std::string CaseText(const Json& c) {
   for (const auto& [name, of] : c["estimators"].items()) {
     table.Add({"  " + name, MetricText(of, kShown[0], "mean"), MetricText(of, kShown[0], "p95"),
                MetricText(of, kShown[1], "mean"), MetricText(of, kShown[2], "mean")});
+  }
+  for (const auto& [label, figures] : PaperRows(c["paper"])) {
+    table.Add({"  " + label, figures[0], "", figures[1], ""});
   }
   if (!c["estimators"].empty()) text += table.Text();
   for (const Json& p : c["paired"]) {

@@ -76,6 +76,7 @@ Json CaseJson(const TableCase& c) {
           {"scenario", c.scenario},
           {"variant", c.variant},
           {"grid", c.grid},
+          {"paper", c.paper},
           {"outcomes", outcomes},
           {"ok_rate", testbed::ToJson(RateWithInterval(c.Ok(), c.Finished()))},
           {"run", Json::object()},

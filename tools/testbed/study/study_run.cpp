@@ -94,7 +94,8 @@ StudyRunResult RunStudy(const StudyPlan& plan, const StudyRunOptions& options,
   CheckShard(plan, options);
   MakeFolder(options.out);
   FileLock lock(options.out);
-  StudyDatabase database = StudyDatabase::Create(options.out, plan, options.study_file);
+  StudyDatabase database =
+      StudyDatabase::Create(options.out, plan, options.study_file, options.mix_builds);
   const std::vector<bool> written = database.Finished(plan.trial_count(), options.retry_failed);
   Queue queue(written, options.shard);
   StudyRunResult result{.signal = 0, .counts = queue.Count(), .outcomes = {}, .digest = ""};

@@ -19,6 +19,7 @@ struct StudyRunOptions {
   int jobs = 1;
   Shard shard;
   bool retry_failed = false;
+  bool mix_builds = false;  // go on with a file whose trials other code has run
   std::filesystem::path out;
   std::string study_file;  // as typed
 };
