@@ -1,9 +1,9 @@
 // What does a study cost beside its trials, and how long does the report of a large one take?
 //
 // BM_StudyTrial: a trial whose run takes microseconds, through worker process, scoring and result
-// file. "cpu_ms": of all processes, a trial. BM_StudyReport/N: everything `polnav report` does for N
-// trials of two estimators with twelve metrics each; "peak_mb": of this process so far, so that it
-// counts in a run of this benchmark alone:
+// file. "cpu_ms": of all processes, a trial. BM_StudyReport/N: everything `polnav report` does for
+// N trials of two estimators with twelve metrics each; "peak_mb": of this process so far, so that
+// it counts in a run of this benchmark alone:
 //   build/release/polnav_study_bench --benchmark_filter=Report/1000000
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -34,9 +34,9 @@ double ProcessorTime_s() {
 void BM_StudyTrial(benchmark::State& state) {
   constexpr int kTrials = 400;
   const StudyFolder folder;
-  const StudyPlan plan = folder.Plan(
-      "trials: " + std::to_string(kTrials) +
-      "\ndispersions:\n  - {key: sky.max_dop, uniform: {min: 0.5, max: 0.9}}\n");
+  const StudyPlan plan =
+      folder.Plan("trials: " + std::to_string(kTrials) +
+                  "\ndispersions:\n  - {key: sky.max_dop, uniform: {min: 0.5, max: 0.9}}\n");
   const double begin_s = ProcessorTime_s();
   for (auto _ : state) {
     std::filesystem::remove(folder.File("r.sqlite"));
@@ -54,9 +54,9 @@ void BM_StudyReport(benchmark::State& state) {
   const std::string file = folder.File("large.sqlite");
   {
     SQLite::Database db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    FillExampleStudy(db, {.trials = static_cast<std::uint64_t>(state.range(0)),
-                          .series = false,
-                          .more_metrics = 9});
+    FillExampleStudy(
+        db,
+        {.trials = static_cast<std::uint64_t>(state.range(0)), .series = false, .more_metrics = 9});
   }
   const ClosedLoop none;
   const double begin_s = ProcessorTime_s();
@@ -64,8 +64,7 @@ void BM_StudyReport(benchmark::State& state) {
     std::ostringstream out;
     benchmark::DoNotOptimize(RunCommandLine({"report", file}, {out, out, false}, none));
   }
-  state.counters["cpu_s"] =
-      (ProcessorTime_s() - begin_s) / static_cast<double>(state.iterations());
+  state.counters["cpu_s"] = (ProcessorTime_s() - begin_s) / static_cast<double>(state.iterations());
   state.counters["peak_mb"] = PeakMemoryMb();
 }
 BENCHMARK(BM_StudyReport)

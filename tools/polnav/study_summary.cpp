@@ -22,12 +22,13 @@ std::string MetricText(const Json& of, const std::string& metric, const char* st
 
 // By label: RMSE of heading and of position, of a paper's one run.
 std::map<std::string, std::array<std::string, 2>> PaperRows(const Json& paper) {
+  const std::array<std::string, 2> none{"-", "-"};
   std::map<std::string, std::array<std::string, 2>> rows;
   for (const std::size_t k : {0U, 1U}) {
     if (!paper.contains(kShown[k])) continue;
     for (const Json& figure : paper[kShown[k]]) {
-      rows[figure["label"].get<std::string>()][k] =
-          fmt::format("{:g}", figure["value"].get<double>());
+      auto& row = rows.try_emplace(figure["label"].get<std::string>(), none).first->second;
+      row[k] = fmt::format("{:g}", figure["value"].get<double>());
     }
   }
   return rows;
@@ -46,7 +47,7 @@ std::string CaseText(const Json& c) {
                MetricText(of, kShown[1], "mean"), MetricText(of, kShown[2], "mean")});
   }
   for (const auto& [label, figures] : PaperRows(c["paper"])) {
-    table.Add({"  " + label, figures[0], "", figures[1], ""});
+    table.Add({"  " + label, figures[0], "-", figures[1], "-"});
   }
   if (!c["estimators"].empty()) text += table.Text();
   for (const Json& p : c["paired"]) {
