@@ -68,8 +68,9 @@ void BM_StudyReport(benchmark::State& state) {
   state.counters["peak_mb"] = PeakMemoryMb();
 }
 BENCHMARK(BM_StudyReport)
-    ->Arg(10'000)
-    ->Arg(1'000'000)
+    ->Args({10'000, 12})
+    ->Args({1'000'000, 12})
+    ->Args({1'000'000, 60})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
