@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <vector>
 
 #include "tools/polnav/console.h"
 #include "tools/testbed/report/study_report.h"
@@ -20,15 +20,22 @@ std::string MetricText(const Json& of, const std::string& metric, const char* st
   return IntervalText(of["metrics"][metric][statistic]);
 }
 
-// By label: RMSE of heading and of position, of a paper's one run.
-std::map<std::string, std::array<std::string, 2>> PaperRows(const Json& paper) {
-  const std::array<std::string, 2> none{"-", "-"};
-  std::map<std::string, std::array<std::string, 2>> rows;
+// RMSE of heading and of position of a paper's one run, in the paper's order.
+struct PaperLine {
+  std::string label;
+  std::array<std::string, 2> rmse{"-", "-"};
+};
+
+std::vector<PaperLine> PaperLines(const Json& paper) {
+  std::vector<PaperLine> rows;
   for (const std::size_t k : {0U, 1U}) {
     if (!paper.contains(kShown[k])) continue;
     for (const Json& figure : paper[kShown[k]]) {
-      auto& row = rows.try_emplace(figure["label"].get<std::string>(), none).first->second;
-      row[k] = fmt::format("{:g}", figure["value"].get<double>());
+      const auto label = figure["label"].get<std::string>();
+      auto row = std::find_if(rows.begin(), rows.end(),
+                              [&](const PaperLine& other) { return other.label == label; });
+      if (row == rows.end()) row = rows.insert(rows.end(), {.label = label});
+      row->rmse[k] = fmt::format("{:g}", figure["value"].get<double>());
     }
   }
   return rows;
@@ -46,8 +53,8 @@ std::string CaseText(const Json& c) {
     table.Add({"  " + name, MetricText(of, kShown[0], "mean"), MetricText(of, kShown[0], "p95"),
                MetricText(of, kShown[1], "mean"), MetricText(of, kShown[2], "mean")});
   }
-  for (const auto& [label, figures] : PaperRows(c["paper"])) {
-    table.Add({"  " + label, figures[0], "-", figures[1], "-"});
+  for (const PaperLine& row : PaperLines(c["paper"])) {
+    table.Add({"  " + row.label, row.rmse[0], "-", row.rmse[1], "-"});
   }
   if (!c["estimators"].empty()) text += table.Text();
   for (const Json& p : c["paired"]) {
