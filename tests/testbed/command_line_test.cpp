@@ -168,6 +168,11 @@ TEST_F(CommandLine, ListsAndDescribesItself) {
   EXPECT_EQ(Call({"list"}), kExitHolds);
   EXPECT_NE(out_.str().find("stereo_polarization"), std::string::npos);
   EXPECT_NE(out_.str().find("estimators.<name>.heading_deg.rmse"), std::string::npos);
+  EXPECT_NE(out_.str().find("studies/smoke.yaml\n      Six short drives"), std::string::npos);
+  EXPECT_EQ(Call({"list", "--study-schema"}), kExitHolds);
+  const Json study = Json::parse(out_.str());
+  EXPECT_EQ(study["title"], "Polnav study");
+  EXPECT_TRUE(study["properties"]["stop"]["items"]["properties"].contains("half_width"));
   EXPECT_EQ(Call({"list", "--schema"}), kExitHolds);
   EXPECT_EQ(Json::parse(out_.str())["properties"]["sky"]["type"], "object");
   EXPECT_EQ(Call({"--version"}), kExitHolds);

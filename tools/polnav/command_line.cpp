@@ -8,6 +8,7 @@
 #include "tools/testbed/input_error.h"
 #include "tools/testbed/option_tree.h"
 #include "tools/testbed/report.h"
+#include "tools/testbed/study/study_options.h"
 
 namespace polnav::testbed {
 namespace {
@@ -23,6 +24,14 @@ std::string Joined(const std::vector<std::string>& arguments) {
 
 Json ScenarioSchema() { return OptionSchema<Scenario>(); }
 
+int PrintSchema(const std::string& of, const Json& of_options, const Console& console) {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "Polnav " + of}};
+  schema.update(of_options);
+  console.out << schema.dump(2) << "\n";
+  return kExitHolds;
+}
+
 struct Parsed {
   RunArguments run;
   ReplayArguments replay;
@@ -34,6 +43,7 @@ struct Parsed {
   CompassArguments compass;
   bool print_options = false;
   bool schema = false;
+  bool study_schema = false;
 };
 
 CLI::App* AddRun(CLI::App& app, RunArguments& a) {
@@ -92,6 +102,7 @@ CLI::App* AddStudy(CLI::App& app, StudyArguments& a) {
   study->add_option("--shard", a.shard, "Only part K of N: K/N");
   study->add_option("--trial", a.trial, "Run this one again and compare it with the record");
   study->add_flag("--retry-failed", a.retry_failed, "Run again what did not go ok");
+  study->add_flag("--mix-builds", a.mix_builds, "Go on with trials that another build has run");
   study->add_flag("--quiet", a.quiet, "Print nothing but failures");
   return study;
 }
@@ -100,6 +111,7 @@ CLI::App* AddMerge(CLI::App& app, MergeArguments& a) {
   CLI::App* merge = app.add_subcommand("merge", "Join shards of a study into one file");
   merge->add_option("OUT", a.out, "Result file; made, or added to")->required();
   merge->add_option("IN", a.inputs, "Result files of the shards")->required();
+  merge->add_flag("--mix-builds", a.mix_builds, "Also files that different builds have made");
   merge->add_flag("--quiet", a.quiet, "Print nothing but failures");
   return merge;
 }
@@ -109,7 +121,9 @@ CLI::App* AddReport(CLI::App& app, ReportArguments& a) {
   report->add_option("PATH", a.path, "Result file of a study, or folder of a run")->required();
   report->add_option("--out", a.out, "HTML file (default: beside the result file)");
   report->add_option("--csv", a.csv, "Write trial,case,sample,estimator,metric,value");
-  report->add_flag("--quiet", a.quiet, "Print nothing");
+  report->add_option("--summary-csv", a.summary_csv,
+                     "Write a line of statistics a case, estimator and metric");
+  report->add_flag("--quiet", a.quiet, "Print nothing but failures");
   report->add_flag("--json", a.json, "Print all statistics as JSON instead of the table");
   return report;
 }
@@ -202,8 +216,10 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   const CLI::App* evaluate = AddEvaluate(app, parsed.evaluate);
   const CLI::App* sky = AddSky(app, parsed.sky);
   const CLI::App* compass = AddCompass(app, parsed.compass);
-  CLI::App* list = app.add_subcommand("list", "Scenarios, estimators and metrics that there are");
+  CLI::App* list =
+      app.add_subcommand("list", "Scenarios, studies, estimators and metrics that there are");
   list->add_flag("--schema", parsed.schema, "Print the JSON Schema of scenario files instead");
+  list->add_flag("--study-schema", parsed.study_schema, "Print that of study files instead");
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11: reversed
   } catch (const CLI::ParseError& error) {
@@ -227,12 +243,9 @@ int Dispatch(const std::vector<std::string>& arguments, const Console& console,
   if (evaluate->parsed()) return Evaluate(parsed.evaluate, console);
   if (sky->parsed()) return Sky(parsed.sky, console);
   if (compass->parsed()) return CompassReadings(parsed.compass, console);
-  if (list->parsed() && parsed.schema) {
-    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                   {"title", "Polnav scenario"}};
-    schema.update(ScenarioSchema());
-    console.out << schema.dump(2) << "\n";
-    return kExitHolds;
+  if (list->parsed() && parsed.schema) return PrintSchema("scenario", ScenarioSchema(), console);
+  if (list->parsed() && parsed.study_schema) {
+    return PrintSchema("study", OptionSchema<StudyOptions>(), console);
   }
   if (list->parsed()) return List(console);
   console.err << app.help();

@@ -47,19 +47,22 @@ struct StudyArguments {
   std::optional<std::string> shard;  // K/N; absent: as Slurm or Kubernetes say, or all
   std::optional<std::uint64_t> trial;
   bool retry_failed = false;
+  bool mix_builds = false;
   bool quiet = false;
 };
 
 struct MergeArguments {
   std::string out;
   std::vector<std::string> inputs;
+  bool mix_builds = false;
   bool quiet = false;
 };
 
 struct ReportArguments {
   std::string path;  // result file of a study, or folder of a run
   std::string out;   // HTML; empty: beside the result file
-  std::string csv;   // empty: none
+  std::string summary_csv;
+  std::string csv;  // empty: none
   bool quiet = false;
   bool json = false;
 };
@@ -139,7 +142,7 @@ struct CompassArguments {
 // HTML, JUnit, table and verdict of a study; where those of a run are.
 [[nodiscard]] int Report(const ReportArguments& arguments, const Console& console);
 
-// Scenarios, estimators, metrics.
+// Scenarios, studies, estimators, metrics.
 [[nodiscard]] int List(const Console& console);
 
 }  // namespace polnav::testbed

@@ -8,8 +8,8 @@
 namespace polnav::testbed {
 
 int Merge(const MergeArguments& arguments, const Console& console) {
-  const MergeResult result =
-      MergeStudies(arguments.out, {arguments.inputs.begin(), arguments.inputs.end()});
+  const MergeResult result = MergeStudies(
+      arguments.out, {arguments.inputs.begin(), arguments.inputs.end()}, arguments.mix_builds);
   if (arguments.quiet) return kExitHolds;
   console.out << fmt::format("{}\n  {} trials added, {} were there already\n  {} of {} trials",
                              arguments.out, result.added, result.shared, result.present,

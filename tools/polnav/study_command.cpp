@@ -49,11 +49,6 @@ void Summarize(const StudyRunResult& result, const fs::path& out, const Console&
                              result.digest);
 }
 
-bool ToleratesFailures(const StudyOptions& options) {
-  return std::any_of(options.criteria.begin(), options.criteria.end(),
-                     [](const StudyCriterion& c) { return c.statistic == "ok_rate"; });
-}
-
 int RunAll(const StudyArguments& arguments, const StudyPlan& plan, const Shard& shard,
            const fs::path& out, const Console& console, const ClosedLoop& closed_loop) {
   StudyProgress progress(console, plan.options().name, arguments.quiet);
@@ -62,6 +57,7 @@ int RunAll(const StudyArguments& arguments, const StudyPlan& plan, const Shard& 
                {.jobs = arguments.jobs.value_or(ProcessorCount()),
                 .shard = shard,
                 .retry_failed = arguments.retry_failed,
+                .mix_builds = arguments.mix_builds,
                 .out = out,
                 .study_file = arguments.study},
                closed_loop, [&](const StudyCounts& counts) { progress.Show(counts); });
@@ -75,17 +71,15 @@ int RunAll(const StudyArguments& arguments, const StudyPlan& plan, const Shard& 
   }
   if (!arguments.quiet) Summarize(result, out, console);
   // A part of a study is judged with the others, when they are joined.
-  const int verdict = shard.count > 1
-                          ? kExitHolds
-                          : Report({.path = out.string(), .quiet = arguments.quiet}, console);
-  std::uint64_t failed = 0;
-  for (const auto& [outcome, count] : result.outcomes) {
-    failed += outcome == Outcome::kOk ? 0 : count;
+  if (shard.count == 1) {
+    return Report({.path = out.string(), .quiet = arguments.quiet}, console);
   }
-  if (failed == 0 || ToleratesFailures(plan.options())) return verdict;
-  console.err << fmt::format("polnav: {} trials did not go ok: {}\n", failed,
-                             OutcomeTable(result.outcomes));
-  return kExitCriterionFailed;
+  const bool all_ok = std::all_of(result.outcomes.begin(), result.outcomes.end(),
+                                  [](const auto& of) { return of.first == Outcome::kOk; });
+  if (arguments.quiet && !all_ok) {
+    console.err << fmt::format("polnav: {}: {}\n", out.string(), OutcomeTable(result.outcomes));
+  }
+  return kExitHolds;
 }
 
 std::string TrialText(const StudyPlan& plan, const TrialRecord& record) {

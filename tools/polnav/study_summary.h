@@ -11,4 +11,7 @@ namespace polnav::testbed {
 // first `most_cases` cases; a line says how many are left out.
 [[nodiscard]] std::string StudySummary(const Json& aggregate, std::size_t most_cases = 12);
 
+// The study's criteria, a line each: all, or those that fail.
+[[nodiscard]] std::string StudyCriteriaText(const Json& aggregate, bool only_failures);
+
 }  // namespace polnav::testbed

@@ -112,8 +112,12 @@ bool IsMetric(const std::string& path) {
     return FindInfo(parts[1]) != nullptr &&
            (parts[4] == "mean" || parts[4] == "count" || parts[4] == "gated");
   }
-  const std::vector<std::string> all = AllMetrics();
-  return std::find(all.begin(), all.end(), path) != all.end();
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> metrics = AllMetrics();
+    std::sort(metrics.begin(), metrics.end());
+    return metrics;
+  }();
+  return std::binary_search(all.begin(), all.end(), path);
 }
 
 std::string EstimatorOfMetric(const std::string& path) {

@@ -9,6 +9,15 @@ bool Cites(const Scenario& scenario, std::string_view paper) {
   return std::find(scenario.paper.begin(), scenario.paper.end(), paper) != scenario.paper.end();
 }
 
+void AddFigures(const PaperTable& table, const std::string& quantity,
+                std::map<std::string, std::vector<PaperFigure>>& figures) {
+  for (const PaperRow& row : table.rows) {
+    const std::string label = std::string(table.paper) + ": " + std::string(row.label);
+    if (row.rmse) figures[quantity + ".rmse"].push_back({label, *row.rmse});
+    if (row.max) figures[quantity + ".max"].push_back({label, *row.max});
+  }
+}
+
 }  // namespace
 
 PaperTable PaperHeadings(const Scenario& scenario) {
@@ -32,6 +41,13 @@ PaperTable PaperPositions(const Scenario& scenario) {
   }
   if (Cites(scenario, kZeng2020)) return {.paper = kZeng2020, .rows = kZeng2020Position_m};
   return {};
+}
+
+std::map<std::string, std::vector<PaperFigure>> PaperFigures(const Scenario& scenario) {
+  std::map<std::string, std::vector<PaperFigure>> figures;
+  AddFigures(PaperHeadings(scenario), "heading_deg", figures);
+  AddFigures(PaperPositions(scenario), "position_m", figures);
+  return figures;
 }
 
 }  // namespace polnav::testbed

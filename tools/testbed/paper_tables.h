@@ -3,9 +3,12 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/testbed/scenario.h"
 
@@ -66,5 +69,16 @@ inline constexpr std::array<PaperRow, 2> kZeng2020Position_m{{
 // Of the scenario's paper; no rows where that has none.
 [[nodiscard]] PaperTable PaperHeadings(const Scenario& scenario);
 [[nodiscard]] PaperTable PaperPositions(const Scenario& scenario);
+
+// One figure of a paper's one run: of the same quantity as a metric of ours.
+struct PaperFigure {
+  std::string label;
+  double value = 0.0;
+};
+
+// By metric: heading_deg.rmse, heading_deg.max, position_m.rmse, position_m.max, as far as the
+// scenario's paper has them.
+[[nodiscard]] std::map<std::string, std::vector<PaperFigure>> PaperFigures(
+    const Scenario& scenario);
 
 }  // namespace polnav::testbed

@@ -252,6 +252,12 @@ Scenario ParseScenario(const std::string& text, const std::string& file,
   return FromDocument(ParseYaml(text, file), overrides, level);
 }
 
+Scenario ScenarioOf(const YamlDocument& document, const std::vector<ScenarioOverride>& overrides,
+                    sim::Level level) {
+  return FromDocument({document.file, YAML::Clone(document.root), document.overrides}, overrides,
+                      level);
+}
+
 std::string ResolvedYaml(const Scenario& scenario) { return ToYaml(OptionValues(scenario)); }
 
 }  // namespace polnav::testbed

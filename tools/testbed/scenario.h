@@ -133,6 +133,11 @@ struct ScenarioOverride {
                                      const std::vector<ScenarioOverride>& overrides = {},
                                      sim::Level level = sim::Level::kImage);
 
+// The same of a document that was read before, which is left as it is. Its lines are forgotten:
+// errors name the file only.
+[[nodiscard]] Scenario ScenarioOf(const YamlDocument& document,
+                                  const std::vector<ScenarioOverride>& overrides, sim::Level level);
+
 // The part of the checks that holds whether the measurements are simulated or recorded: the date,
 // faults, estimators and criteria, against the sensors on board.
 void CheckListening(const YamlDocument& document, const Scenario& scenario,

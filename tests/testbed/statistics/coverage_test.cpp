@@ -6,7 +6,8 @@
 // NEES chi-square of 3. 2,000 studies measure a coverage of 95 % to 0.49 %, one sigma: 93.5 to
 // 96.5 % is three.
 // Rows of up to 50 trials are quick: 10,000 studies, 0.22 %.
-// Prints the table of docs/study_statistics.md.
+// Prints the table of docs/study_statistics.md. POLNAV_COVERAGE_SEED draws other studies, and
+// POLNAV_COVERAGE_STUDIES so many of them for every row; the bounds below are for the defaults.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,9 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "sim/random.h"
@@ -31,8 +34,21 @@
 namespace polnav::testbed {
 namespace {
 
-constexpr int kStudies = 2000;
-int StudiesOf(int n) { return n <= 50 ? 5 * kStudies : kStudies; }
+std::uint64_t FromEnvironment(const char* name, std::uint64_t otherwise) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? otherwise : std::stoull(text);
+}
+
+std::uint64_t Seed() { return FromEnvironment("POLNAV_COVERAGE_SEED", 2026); }
+
+// Of a row with n trials a study.
+int StudiesOf(int n = 1000) {
+  constexpr int kStudies = 2000;
+  const int studies = n <= 50 ? 5 * kStudies : kStudies;
+  return static_cast<int>(
+      FromEnvironment("POLNAV_COVERAGE_STUDIES", static_cast<std::uint64_t>(studies)));
+}
+
 constexpr double kLowest = 0.935;
 constexpr double kHighest = 0.965;
 
@@ -69,7 +85,7 @@ std::array<double, 3> Errors(sim::RandomStream::Sample& sample) {
 
 std::vector<double> Study(const Metric& metric, int n, int study, const char* stream = "linear") {
   sim::RandomStream::Sample sample =
-      sim::RandomStream(2026, static_cast<std::uint64_t>(study), stream)
+      sim::RandomStream(Seed(), static_cast<std::uint64_t>(study), stream)
           .At(static_cast<std::uint64_t>(n));
   std::vector<double> values;
   for (int i = 0; i < n; ++i) values.push_back(metric.of(Errors(sample)));
@@ -78,7 +94,7 @@ std::vector<double> Study(const Metric& metric, int n, int study, const char* st
 
 // Share of the studies in which it holds; printed.
 double Coverage(const std::string& what, const std::function<bool(int)>& holds,
-                int studies = kStudies) {
+                int studies = StudiesOf()) {
   int hits = 0;
   for (int s = 0; s < studies; ++s) hits += holds(s) ? 1 : 0;
   const double share = static_cast<double>(hits) / studies;
@@ -86,8 +102,9 @@ double Coverage(const std::string& what, const std::function<bool(int)>& holds,
   return share;
 }
 
-void ExpectNominal(double share, const std::string& what, double highest = kHighest) {
-  EXPECT_GE(share, kLowest) << what;
+void ExpectNominal(double share, const std::string& what, double highest = kHighest,
+                   double lowest = kLowest) {
+  EXPECT_GE(share, lowest) << what;
   EXPECT_LE(share, highest) << what;
 }
 
@@ -148,21 +165,19 @@ TEST(Coverage, OfTheDistributionsBand) {
   }
 }
 
-// Below nominal by a percent or two for small studies: no method was found that is not.
-TEST(Coverage, OfTheStandardDeviationIsNearlyNominal) {
+TEST(Coverage, OfTheStandardDeviation) {
   for (const Metric& m : {Metrics()[0], Metrics()[1]}) {
     for (const int n : {20, 50, 200}) {
       const std::string what = fmt::format("standard deviation of {}, {} trials", m.name, n);
-      EXPECT_GE(Coverage(
-                    what,
-                    [&](int s) {
-                      std::vector<double> v = Study(m, n, s);
-                      std::sort(v.begin(), v.end());
-                      return SpreadWithInterval(v).interval.Holds(m.sigma);
-                    },
-                    StudiesOf(n)),
-                0.92)
-          << what;
+      ExpectNominal(Coverage(
+                        what,
+                        [&](int s) {
+                          std::vector<double> v = Study(m, n, s);
+                          std::sort(v.begin(), v.end());
+                          return SpreadWithInterval(v).interval.Holds(m.sigma);
+                        },
+                        StudiesOf(n)),
+                    what);
     }
   }
 }
@@ -172,7 +187,7 @@ TEST(Coverage, OfPairedDifferencesAndTheImprovement) {
   for (const int n : {20, 50, 200, 1000}) {
     const auto pairs = [n](int study) {
       sim::RandomStream::Sample sample =
-          sim::RandomStream(2026, static_cast<std::uint64_t>(study), "pairs")
+          sim::RandomStream(Seed(), static_cast<std::uint64_t>(study), "pairs")
               .At(static_cast<std::uint64_t>(n));
       std::pair<std::vector<double>, std::vector<double>> ab;
       for (int i = 0; i < n; ++i) {
@@ -219,7 +234,7 @@ TEST(Coverage, OfTheRankCorrelation) {
     ExpectNominal(Coverage(what,
                            [&](int s) {
                              sim::RandomStream::Sample sample =
-                                 sim::RandomStream(2026, static_cast<std::uint64_t>(s), "ranks")
+                                 sim::RandomStream(Seed(), static_cast<std::uint64_t>(s), "ranks")
                                      .At(static_cast<std::uint64_t>(n));
                              std::vector<double> x;
                              std::vector<double> y;
@@ -267,25 +282,72 @@ TEST(Coverage, OfTheSuccessRate) {
   }
 }
 
-// Stopped where the interval is as narrow as 100 to 400 trials would make it.
+// What a study can stop by: a statistic, its true value, and 1.96 sigma of it for one trial.
+struct Stopped {
+  std::string name;
+  LookFunction statistic;
+  double truth;
+  double spread;
+  bool one_more_look = false;
+};
+
+// The spread of a median is 1/2 over the density there.
+Stopped StoppedMedian(const Metric& m) {
+  const double density = 2e-4 / (m.quantile(0.5 + 1e-4) - m.quantile(0.5 - 1e-4));
+  return {"median",
+          [](std::span<const double> values) {
+            std::vector<double> sorted(values.begin(), values.end());
+            std::sort(sorted.begin(), sorted.end());
+            return PercentileWithInterval(sorted, 50.0);
+          },
+          m.quantile(0.5), 1.96 * 0.5 / density, true};
+}
+
+// The share below a percentile.
+Stopped StoppedRate(const Metric& m, double percent) {
+  const double p = percent / 100.0;
+  const double limit = m.quantile(p);
+  return {fmt::format("success rate {}", p),
+          [limit](std::span<const double> values) -> Estimated {
+            const auto count = static_cast<std::uint64_t>(
+                std::count_if(values.begin(), values.end(), [&](double v) { return v <= limit; }));
+            return {static_cast<double>(count) / static_cast<double>(values.size()),
+                    ExactRateInterval(count, values.size())};
+          },
+          p, 1.96 * std::sqrt(p * (1.0 - p))};
+}
+
+std::vector<Stopped> StoppedBy(const Metric& m) {
+  const LookFunction mean = [](auto values) { return MeanWithInterval(values, 1); };
+  return {{"mean", mean, m.mean, 1.96 * m.sigma},
+          StoppedMedian(m),
+          StoppedRate(m, 50.0),
+          StoppedRate(m, 90.0)};
+}
+
+// Stopped where the interval is as narrow as 100 to 400 trials would make it. Exact intervals of
+// rates cover more than 95 %; medians of skewed metrics 93 to 94 %, below nominal: no rule was
+// found that costs less than half as many trials again.
 TEST(Coverage, AfterSequentialStopping) {
   for (const Metric& m : Metrics()) {
-    for (const int aim : {100, 200, 400}) {
-      const double half_width = 1.96 * m.sigma / std::sqrt(aim);
-      double trials = 0.0;
-      const std::string what =
-          fmt::format("mean of {}, stopped at a half-width of {:.3f}", m.name, half_width);
-      ExpectNominal(
-          Coverage(what,
-                   [&](int s) {
-                     const std::vector<double> v = Study(m, 6 * aim + 400, s, "stopped");
-                     const auto stop = StopsAt(v, {.half_width = half_width}, 1);
-                     if (!stop) return false;
-                     trials += static_cast<double>(*stop) / kStudies;
-                     return MeanWithInterval(std::span(v).first(*stop), 1).interval.Holds(m.mean);
-                   }),
-          what);
-      fmt::print("|   trials it took, on average | {:.0f} |\n", trials);
+    for (const Stopped& by : StoppedBy(m)) {
+      for (const int aim : {100, 200, 400}) {
+        const double half_width = by.spread / std::sqrt(aim);
+        double trials = 0.0;
+        const std::string what =
+            fmt::format("{} of {}, stopped at a half-width of {:.3f}", by.name, m.name, half_width);
+        const double share = Coverage(what, [&](int s) {
+          const std::vector<double> v = Study(m, 6 * aim + 400, s, "stopped");
+          const auto stop = StopsAt(
+              v, {.half_width = half_width, .one_more_look = by.one_more_look}, by.statistic);
+          if (!stop) return false;
+          trials += static_cast<double>(*stop) / StudiesOf();
+          return by.statistic(std::span(v).first(*stop)).interval.Holds(by.truth);
+        });
+        const bool rate = by.name.starts_with("success");
+        ExpectNominal(share, what, rate ? 1.0 : kHighest, by.one_more_look ? 0.92 : kLowest);
+        fmt::print("|   trials it took, on average | {:.0f} |\n", trials);
+      }
     }
   }
 }

@@ -112,11 +112,17 @@ TEST(Stopping, LooksSeldomAndIgnoresWhatRanAhead) {
   EXPECT_EQ(NextLook(130), 157U);
   std::vector<double> values = Ramp(1000);
   for (double& v : values) v = std::fmod(v * 0.618033988749895, 1.0);
-  const auto stop = StopsAt(values, {.half_width = 0.05}, 1);
+  const LookFunction mean = [](auto v) { return MeanWithInterval(v, 1); };
+  const auto stop = StopsAt(values, {.half_width = 0.05}, mean);
   ASSERT_TRUE(stop.has_value());
-  EXPECT_EQ(StopsAt(std::span(values).first(*stop), {.half_width = 0.05}, 1), stop);
+  EXPECT_EQ(StopsAt(std::span(values).first(*stop), {.half_width = 0.05}, mean), stop);
   EXPECT_LE(MeanWithInterval(std::span(values).first(*stop), 1).interval.HalfWidth(), 0.05);
-  EXPECT_FALSE(StopsAt(values, {.half_width = 1e-6}, 1).has_value());
+  EXPECT_FALSE(StopsAt(values, {.half_width = 1e-6}, mean).has_value());
+  EXPECT_EQ(StopsAt(values, {.half_width = 0.05, .one_more_look = true}, mean), NextLook(*stop));
+  EXPECT_EQ(LookBefore(NextLook(*stop)), stop);
+  EXPECT_FALSE(LookBefore(kFirstLook).has_value());
+  // Of a mean of 0.5: a tenth of it is the same rule.
+  EXPECT_EQ(StopsAt(values, {.half_width = 0.1, .relative = true}, mean), stop);
 }
 
 }  // namespace

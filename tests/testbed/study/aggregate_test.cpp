@@ -107,5 +107,30 @@ TEST(StudyCsv, HasALineAValue) {
   EXPECT_NE(csv.find("\n0,linear <problem>,0,first,sim_duration_s,20\n"), std::string::npos);
 }
 
+TEST(StudySummaryCsv, HasALineAMetricAndThePapersFigures) {
+  SQLite::Database db = InMemory();
+  FillExampleStudy(db, {.paper = true});
+  const StudyTable table(db);
+  const Json aggregate = Aggregate(table);
+  std::ostringstream out;
+  WriteSummaryCsv(aggregate, out);
+  std::istringstream lines(out.str());
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 32) << line;
+  }
+  EXPECT_EQ(count, 1 + 2 * 3 + 2);
+  EXPECT_NE(out.str().find("\nlinear <problem>,Paper1999: method,heading_deg.rmse,1,4.5,,"),
+            std::string::npos);
+  const std::string summary = StudySummary(aggregate);
+  const std::string line = summary.substr(summary.find("Paper1999: method"));
+  EXPECT_NE(line.substr(0, line.find('\n')).find(" 4.5"), std::string::npos) << summary;
+  // Its largest error is another quantity than the largest trial's RMSE.
+  const std::string html = StudyHtml(table, aggregate);
+  const auto row = html.find("Paper1999: method");
+  ASSERT_NE(row, std::string::npos);
+  EXPECT_EQ(html.substr(row, html.find("</tr>", row) - row).find("21"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace polnav::testbed

@@ -35,7 +35,12 @@ void MakeTables(SQLite::Database& db, const ExampleStudyOptions& options) {
   Meta(db, "level", "measurement");
   Meta(db, "trials", std::to_string(options.trials));
   Meta(db, "study_file", "linear.yaml");
-  Meta(db, "definition", "{\"study\": {\"criteria\": " + options.criteria + "}, \"cases\": []}");
+  const std::string paper =
+      R"([{"paper": {"heading_deg.rmse": [{"label": "Paper1999: method", "value": 4.5}],
+                      "heading_deg.max": [{"label": "Paper1999: method", "value": 21}]}}])";
+  Meta(db, "definition",
+       "{\"study\": {\"criteria\": " + options.criteria +
+           "}, \"cases\": " + (options.paper ? paper : "[]") + "}");
 }
 
 void WriteSeries(SQLite::Database& db, const std::string& estimator, std::int64_t trial,

@@ -17,6 +17,7 @@ struct ExampleStudyOptions {
   std::uint64_t trials = 200;
   bool backwards = false;  // the order in which they are written
   bool series = true;
+  bool paper = false;    // that the case has figures of one
   int more_metrics = 0;  // as many columns of noise
   std::string criteria = "[]";
 };

@@ -57,7 +57,10 @@ TEST_F(StudyCommand, TrialsThatDoNotGoOkAreOneUnlessACriterionAllowsThem) {
   };
   EXPECT_EQ(CallStudy({"--out", file_}, crash), kExitCriterionFailed);
   EXPECT_TRUE(Printed("3 ok, 1 crashed"));
-  EXPECT_TRUE(Complained("1 trials did not go ok"));
+  EXPECT_TRUE(Printed("FAILS  every trial goes ok [example]: expected ok_rate >= 1, got 0.75 "))
+      << out_.str();
+  EXPECT_EQ(Call({"report", file_, "--quiet"}), kExitCriterionFailed);
+  EXPECT_TRUE(Complained("FAILS  every trial goes ok")) << err_.str();
   folder_.WriteStudy(std::string(kTwoDispersions) +
                      "criteria:\n  - {name: most, statistic: ok_rate, at_least: 0.5}\n");
   EXPECT_EQ(CallStudy({"--out", file_}, crash), kExitHolds) << err_.str();

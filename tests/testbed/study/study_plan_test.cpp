@@ -158,6 +158,12 @@ TEST(StudyPlan, RefusesCriteriaThatCannotBeJudged) {
   EXPECT_EQ(error("{name: c, estimator: stereo, metric: ate_m.rmse, statistic: success_rate, "
                   "at_least: 1}"),
             "study.yaml:5: criteria.0: success_rate needs success_at_most or success_at_least");
+  for (const std::string statistic : {"min", "max"}) {
+    EXPECT_EQ(error("{name: c, estimator: stereo, metric: ate_m.rmse, statistic: " + statistic +
+                    ", at_most: 1, judge: interval}"),
+              "study.yaml:5: criteria.0.judge: '" + statistic +
+                  "' of the trials has no 95 % interval: use judge: value, or a percentile");
+  }
   EXPECT_EQ(error("{name: c, estimator: stereo, metric: ate_m.rmse, statistic: p42, at_most: 1}")
                 .substr(0, 60),
             "study.yaml:5: criteria.0.statistic: 'p42' is not one of: mea");

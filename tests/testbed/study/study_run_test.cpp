@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <iostream>
 
 #include "tests/testbed/study/study_fixture.h"
+#include "tools/testbed/build_id.h"
 #include "tools/testbed/input_error.h"
 #include "tools/testbed/study/file_lock.h"
 #include "tools/testbed/study/merge.h"
@@ -192,6 +194,74 @@ TEST_F(StudyRun, MergeRefusesMixedStudiesAndContradictions) {
   EXPECT_EQ(merge("a.sqlite", "d.sqlite").substr(0, 59),
             "d.sqlite: trial 6 is 'ok' here and 'ok' with other results ");
   EXPECT_EQ(Text("a.sqlite"), before) << "nothing was lost";
+}
+
+// As if other code had run the trials of a file.
+void PretendOtherCode(const std::string& file) {
+  SQLite::Database(file, SQLite::OPEN_READWRITE)
+      .exec("UPDATE meta SET value = 'older' WHERE key IN ('code', 'commit')");
+}
+
+TEST_F(StudyRun, TrialsOfAnotherBuildAreNotMixedSilently) {
+  (void)Run("o.sqlite", {.shard = {.index = 0, .count = 2}});
+  PretendOtherCode(folder_.File("o.sqlite"));
+  const std::string before = Text("o.sqlite");
+  EXPECT_EQ(ErrorOf([&] { (void)Run("o.sqlite"); }).substr(0, 65),
+            "o.sqlite: its trials were run by other code: commit older of Poln");
+  (void)Run("n.sqlite", {.shard = {.index = 1, .count = 2}});
+  EXPECT_EQ(ErrorOf([&] {
+              (void)MergeStudies(folder_.File("o.sqlite"), {folder_.File("n.sqlite")});
+            }).substr(0, 54),
+            "n.sqlite: its trials were run by other code than those");
+  EXPECT_EQ(Text("o.sqlite"), before) << "nothing was lost";
+  EXPECT_EQ(MergeStudies(folder_.File("o.sqlite"), {folder_.File("n.sqlite")}, true).present, 20U);
+  EXPECT_EQ(Run("o.sqlite", {.mix_builds = true}).counts.resumed, 20U);
+  EXPECT_EQ(StudyDatabase::OpenToRead(folder_.File("o.sqlite")).Meta("code"),
+            "older, " + ThisBuild().code);
+}
+
+TEST_F(StudyRun, AReadOnlyFileIsSaidSoAndKept) {
+  const StudyRunResult whole = Run("r.sqlite");
+  const std::string before = Text("r.sqlite");
+  const std::string file = folder_.File("r.sqlite");
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  // Root may write all the same; as nobody it may not, in a process of its own.
+  std::filesystem::permissions(std::filesystem::path(file).parent_path(),
+                               std::filesystem::perms::all);
+  if (::getuid() == 0) std::filesystem::permissions(file, std::filesystem::perms(0444));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::getuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
+    const std::string error = ErrorOf([&] { (void)Run("r.sqlite"); });
+    if (error != "r.sqlite: is read-only") std::cerr << error << std::endl;
+    ::_exit(error == "r.sqlite: is read-only" ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(Text("r.sqlite"), before);
+}
+
+TEST_F(StudyRun, TwoProcessesOnOneFileDoNotDisturbEachOther) {
+  const ClosedLoopFunction slow = [](const Scenario& s, const RunOptions& o, const auto& p) {
+    ::usleep(20'000);
+    return DrawnRun(s, o, p);
+  };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    (void)Run("two.sqlite", {}, slow);
+    ::_exit(0);
+  }
+  // The first has begun when its file is there.
+  while (!std::filesystem::exists(folder_.File("two.sqlite"))) ::usleep(1000);
+  EXPECT_NE(ErrorOf([&] {
+              (void)Run("two.sqlite");
+            }).find("another polnav is writing this file (process " + std::to_string(child)),
+            std::string::npos);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(Run("two.sqlite").digest, Run("whole.sqlite").digest);
 }
 
 TEST_F(StudyRun, OnlyOneProcessWritesAFile) {

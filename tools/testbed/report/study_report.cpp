@@ -48,11 +48,11 @@ std::string StudyHtml(const StudyTable& table, const Json& aggregate) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
       EscapeMarkup(table.Meta("name")) + " – Polnav study</title>\n<style>\n";
   html.append(ReportCss()).append("</style></head>\n<body><main>\n");
-  html += StudyHeader(table, aggregate) + "\n" + StudyCriteriaSection(aggregate) + "\n" +
-          StudyErrorSections(table, aggregate) + "\n" + StudyPairSection(aggregate) + "\n" +
-          StudyConsistencySection(aggregate) + "\n" + ChartSection(data) + "\n" +
-          StudySensitivitySection(aggregate) + "\n" + StudyWorstSection(table) + "\n" +
-          StudyFailureSection(table);
+  html += StudyHeader(table, aggregate) + "\n" + StudyStopSection(aggregate) + "\n" +
+          StudyCriteriaSection(aggregate) + "\n" + StudyErrorSections(table, aggregate) + "\n" +
+          StudyPairSection(aggregate) + "\n" + StudyConsistencySection(aggregate) + "\n" +
+          ChartSection(data) + "\n" + StudySensitivitySection(aggregate) + "\n" +
+          StudyWorstSection(table) + "\n" + StudyFailureSection(table);
   html.append("\n</main>\n<script>").append(ChartJs()).append("</script>\n<script>const study = ");
   html += ScriptSafe(data);
   return html.append(";\n")

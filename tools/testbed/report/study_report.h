@@ -24,6 +24,7 @@ inline constexpr std::size_t kChartedCases = 12;
 
 // HTML fragments; text from outside is escaped.
 [[nodiscard]] std::string StudyHeader(const StudyTable& table, const Json& aggregate);
+[[nodiscard]] std::string StudyStopSection(const Json& aggregate);
 [[nodiscard]] std::string StudyCriteriaSection(const Json& aggregate);
 [[nodiscard]] std::string StudyErrorSections(const StudyTable& table, const Json& aggregate);
 [[nodiscard]] std::string StudyPairSection(const Json& aggregate);

@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <optional>
+#include <cctype>
 
-#include "tools/testbed/input_error.h"
-#include "tools/testbed/paper_tables.h"
 #include "tools/testbed/report/sections.h"
 #include "tools/testbed/report/study_report.h"
 #include "tools/testbed/study/aggregate.h"
+#include "tools/testbed/study/study_stop.h"
 
 namespace polnav::testbed {
 namespace {
@@ -25,29 +23,18 @@ std::string Section(const std::string& title, const HtmlTable& table, const std:
          "</p></section>";
 }
 
-// Beside the study file as it was typed, if it is still there.
-std::optional<Scenario> ScenarioOf(const StudyTable& table, const TableCase& c) {
-  try {
-    const std::filesystem::path study = table.Meta("study_file");
-    return LoadScenario(study.parent_path() / c.scenario_file);
-  } catch (const std::exception&) {
-    return std::nullopt;  // the report does without the paper
-  }
-}
-
-void AddPaper(const PaperTable& paper, HtmlTable& table) {
-  for (const PaperRow& row : paper.rows) {
-    const auto text = [](std::optional<double> v) {
-      return v ? fmt::format("{:g}", *v) : std::string("–");
-    };
-    table.rows.push_back({std::string(paper.paper) + ": " + std::string(row.label), "1",
-                          text(row.rmse), "", "", "", text(row.max)});
+// A paper's figure is of one run: in the column of the mean, with nothing about trials.
+void AddPaper(const Json& paper, const std::string& metric, HtmlTable& table) {
+  if (!paper.contains(metric)) return;
+  for (const Json& row : paper[metric]) {
+    table.rows.push_back({row["label"].get<std::string>(), "1",
+                          fmt::format("{:g}", row["value"].get<double>()), "", "", "", ""});
     table.row_class.resize(table.rows.size() - 2);
     table.row_class.emplace_back("paper");
   }
 }
 
-std::string ErrorTable(const Json& estimators, const std::string& metric, const PaperTable& paper) {
+std::string ErrorTable(const Json& estimators, const std::string& metric, const Json& paper) {
   HtmlTable table{.rows = {{metric, "trials", "mean", "median", "std", "95th percentile", "max"}}};
   for (const auto& [name, of] : estimators.items()) {
     if (!of.contains("metrics") || !of["metrics"].contains(metric)) continue;
@@ -58,15 +45,8 @@ std::string ErrorTable(const Json& estimators, const std::string& metric, const 
          m["max"].is_null() ? "–" : fmt::format("{:.4g}", m["max"].get<double>())});
   }
   if (table.rows.size() < 2) return "";
-  AddPaper(paper, table);
+  AddPaper(paper, metric, table);
   return table.Html();
-}
-
-PaperTable PaperOf(const std::optional<Scenario>& scenario, const std::string& metric) {
-  if (!scenario) return {};
-  if (metric == "heading_deg.rmse") return PaperHeadings(*scenario);
-  if (metric == "position_m.rmse") return PaperPositions(*scenario);
-  return {};
 }
 
 std::string PText(const Json& p) {
@@ -97,8 +77,33 @@ std::string StudyHeader(const StudyTable& table, const Json& aggregate) {
          Figure(std::to_string(table.cases().size()), "cases") +
          Figure(table.Meta("level"), "level") + Figure(table.Meta("seed"), "seed") +
          "</div><p class=\"soft small\">In brackets: 95 % intervals. " +
-         EscapeMarkup(table.Meta("polnav_version")) + ", identity <code>" +
+         EscapeMarkup(table.Meta("polnav_version")) + ", commit " +
+         EscapeMarkup(table.Meta("commit")) + ", identity <code>" +
          EscapeMarkup(table.Meta("identity").substr(0, 16)) + "</code></p>";
+}
+
+std::string StudyStopSection(const Json& aggregate) {
+  const Json& stop = aggregate["stop"];
+  if (stop.is_null()) return "";
+  HtmlTable table{.rows = {{"what", "case", "value", "trials", "known to within", "asked", ""}},
+                  .text_columns = true};
+  for (const Json& c : stop["checks"]) {
+    const double scale = c["relative"].get<bool>() ? 100.0 : 1.0;
+    const auto width = [&](const char* key) -> std::string {
+      if (c[key].is_null()) return "–";
+      return fmt::format("{:.4g}{}", scale * c[key].get<double>(),
+                         c["relative"].get<bool>() ? " %" : "");
+    };
+    table.rows.push_back({c["what"].get<std::string>(), c["case"].get<std::string>(),
+                          IntervalText(c["actual"]), c["n"].dump(), width("half_width"),
+                          width("asked"), c["known"].get<bool>() ? "known" : "not yet"});
+  }
+  std::string why = StopText(stop);
+  why = why.substr(0, why.find('\n'));
+  why.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(why.front())));
+  if (why.ends_with(':')) why.back() = '.';
+  return "<section><h2>Why it stopped</h2><p>" + EscapeMarkup(why) + "</p>" +
+         (table.rows.size() > 1 ? table.Html() : "") + "</section>";
 }
 
 std::string StudyCriteriaSection(const Json& aggregate) {
@@ -118,10 +123,9 @@ std::string StudyErrorSections(const StudyTable& table, const Json& aggregate) {
   std::string html;
   for (std::size_t c = 0; c < table.cases().size(); ++c) {
     const Json& of = aggregate["cases"][c];
-    const std::optional<Scenario> scenario = ScenarioOf(table, table.cases()[c]);
     std::string tables;
     for (const std::string& metric : HeadlineMetrics(table)) {
-      tables += ErrorTable(of["estimators"], metric, PaperOf(scenario, metric));
+      tables += ErrorTable(of["estimators"], metric, of["paper"]);
     }
     html += "<section><h2>" + EscapeMarkup(table.cases()[c].label) + "</h2>" + tables +
             "<p class=\"soft small\">Went ok: " + IntervalText(of["ok_rate"], 100.0) + " % of " +

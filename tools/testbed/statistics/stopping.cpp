@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "tools/testbed/statistics/mean.h"
-
 namespace polnav::testbed {
 namespace {
 
@@ -17,19 +15,28 @@ std::size_t NextLook(std::size_t n) {
   return look;
 }
 
-bool IsKnownWellEnough(std::span<const double> values, const StoppingRule& rule,
-                       std::uint64_t seed) {
-  if (values.size() < kFirstLook) return false;
-  const Estimated mean = MeanWithInterval(values, seed);
-  const double asked = rule.half_width * (rule.relative ? std::abs(mean.value) : 1.0);
-  const double correction = 1.0 + kCorrection / static_cast<double>(values.size());
-  return mean.interval.HalfWidth() * correction <= asked;
+std::optional<std::size_t> LookBefore(std::size_t n) {
+  std::optional<std::size_t> before;
+  for (std::size_t look = NextLook(0); look < n; look = NextLook(look)) before = look;
+  return before;
+}
+
+double JudgedHalfWidth(const Estimated& statistic, std::size_t n, bool relative) {
+  if (n == 0) return kInfinity;
+  const double half_width =
+      statistic.interval.HalfWidth() * (1.0 + kCorrection / static_cast<double>(n));
+  if (!relative || half_width == 0.0) return half_width;
+  return half_width / std::abs(statistic.value);
 }
 
 std::optional<std::size_t> StopsAt(std::span<const double> values, const StoppingRule& rule,
-                                   std::uint64_t seed) {
+                                   const LookFunction& statistic) {
   for (std::size_t look = NextLook(0); look <= values.size(); look = NextLook(look)) {
-    if (IsKnownWellEnough(values.first(look), rule, seed)) return look;
+    const Estimated estimated = statistic(values.first(look));
+    if (JudgedHalfWidth(estimated, look, rule.relative) > rule.half_width) continue;
+    if (!rule.one_more_look) return look;
+    const std::size_t next = NextLook(look);
+    return next <= values.size() ? std::optional(next) : std::nullopt;
   }
   return std::nullopt;
 }

@@ -15,6 +15,7 @@
 #include "tools/testbed/statistics/rate.h"
 #include "tools/testbed/study/study_criteria.h"
 #include "tools/testbed/study/study_sensitivity.h"
+#include "tools/testbed/study/study_stop.h"
 
 namespace polnav::testbed {
 namespace {
@@ -75,6 +76,7 @@ Json CaseJson(const TableCase& c) {
           {"scenario", c.scenario},
           {"variant", c.variant},
           {"grid", c.grid},
+          {"paper", c.paper},
           {"outcomes", outcomes},
           {"ok_rate", testbed::ToJson(RateWithInterval(c.Ok(), c.Finished()))},
           {"run", Json::object()},
@@ -167,7 +169,7 @@ std::vector<std::string> HeadlineMetrics(const StudyTable& table) {
     }
   };
   for (const std::string_view metric : kHeadline) add(std::string(metric));
-  for (const StudyCriterionText& criterion : CriteriaOf(table)) add(criterion.metric);
+  for (const StudyCriterionText& criterion : CriteriaOf(table)) add(criterion.asked.metric);
   return metrics;
 }
 
@@ -181,16 +183,19 @@ Json Aggregate(const StudyTable& table) {
   std::uint64_t finished = 0;
   for (const TableCase& c : table.cases()) finished += c.Finished();
   const std::string asked = table.Meta("trials");
-  Json aggregate = {
-      {"study", table.Meta("name")},
-      {"identity", table.Meta("identity")},
-      {"polnav_version", table.Meta("polnav_version")},
-      {"level", table.Meta("level")},
-      {"seed", table.seed()},
-      {"confidence", kConfidence},
-      {"trials", finished},
-      {"complete", asked.empty() || finished >= std::stoull(asked) * table.cases().size()},
-      {"cases", cases}};
+  const std::optional<StudyStop> stop = StopOf(table);
+  const bool stopped = stop && stop->stopped_at;
+  Json aggregate = {{"study", table.Meta("name")},
+                    {"identity", table.Meta("identity")},
+                    {"polnav_version", table.Meta("polnav_version")},
+                    {"level", table.Meta("level")},
+                    {"seed", table.seed()},
+                    {"confidence", kConfidence},
+                    {"trials", finished},
+                    {"complete", stopped || asked.empty() ||
+                                     finished >= std::stoull(asked) * table.cases().size()},
+                    {"stop", ToJson(stop)},
+                    {"cases", cases}};
   aggregate["criteria"] = Json::array();
   for (const StudyVerdict& verdict : JudgeCriteria(table)) {
     aggregate["criteria"].push_back(ToJson(verdict));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "tools/testbed/study/schema.h"
 
 namespace polnav::testbed {
@@ -32,6 +34,50 @@ void WriteCsv(const StudyTable& table, std::ostream& out) {
       const SQLite::Column value = query.getColumn(static_cast<int>(m) + 2);
       if (value.isNull()) continue;
       out << start << table.metrics()[m] << ',' << fmt::format("{}", value.getDouble()) << '\n';
+    }
+  }
+}
+
+namespace {
+
+constexpr std::array<const char*, 9> kIntervals{"mean", "std", "p05", "p25", "median",
+                                                "p75",  "p90", "p95", "p99"};
+
+std::string Number(const Json& value) {
+  return value.is_number() ? fmt::format("{}", value.get<double>()) : "";
+}
+
+void WriteSummaryRow(const std::string& start, const std::string& metric, const Json& of,
+                     std::ostream& out) {
+  out << start << Field(metric) << ',' << of["n"].dump();
+  for (const char* statistic : kIntervals) {
+    for (const char* part : {"value", "lower", "upper"}) out << ',' << Number(of[statistic][part]);
+  }
+  out << ',' << Number(of["min"]) << ',' << Number(of["max"]) << '\n';
+}
+
+}  // namespace
+
+void WriteSummaryCsv(const Json& aggregate, std::ostream& out) {
+  out << "case,estimator,metric,n";
+  for (const char* statistic : kIntervals) {
+    out << fmt::format(",{0},{0}_lower,{0}_upper", statistic);
+  }
+  out << ",min,max\n";
+  for (const Json& c : aggregate["cases"]) {
+    const std::string label = Field(c["label"].get<std::string>()) + ",";
+    for (const auto& [name, of] : c["estimators"].items()) {
+      if (!of.contains("metrics")) continue;
+      for (const auto& [metric, statistics] : of["metrics"].items()) {
+        WriteSummaryRow(label + Field(name) + ",", metric, statistics, out);
+      }
+    }
+    for (const auto& [metric, figures] : c["paper"].items()) {
+      for (const Json& figure : figures) {
+        // 28 fields follow the mean: two ends, eight other statistics, min and max.
+        out << label << Field(figure["label"].get<std::string>()) << ',' << metric << ",1,"
+            << Number(figure["value"]) << std::string(28, ',') << '\n';
+      }
     }
   }
 }

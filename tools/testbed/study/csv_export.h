@@ -12,4 +12,8 @@ namespace polnav::testbed {
 // an empty estimator.
 void WriteCsv(const StudyTable& table, std::ostream& out);
 
+// A line a case, estimator and metric, from the aggregate: mean, std and percentiles with the ends
+// of their 95 % intervals (empty: unbounded). A paper's figures stand among the means, of one run.
+void WriteSummaryCsv(const Json& aggregate, std::ostream& out);
+
 }  // namespace polnav::testbed

@@ -18,13 +18,20 @@ std::int64_t Number(SQLite::Database& db, const std::string& query) {
   return db.execAndGet(query).getInt64();
 }
 
+void CheckSameBuild(const StudyDatabase& target, const StudyDatabase& input) {
+  const bool same = target.Meta("code") == input.Meta("code") &&
+                    target.Meta("polnav_version") == input.Meta("polnav_version");
+  if (same) return;
+  const auto build = [](const StudyDatabase& file) {
+    return fmt::format("commit {} of {}", file.Meta("commit"), file.Meta("polnav_version"));
+  };
+  throw InputError(input.path().string(), 0, "",
+                   fmt::format("its trials were run by other code than those of {}: {}; there {}. "
+                               "Merge them all the same with --mix-builds",
+                               target.path().string(), build(input), build(target)));
+}
+
 void CheckSameStudy(const StudyDatabase& target, const StudyDatabase& input) {
-  if (target.Meta("polnav_version") != input.Meta("polnav_version")) {
-    throw InputError(input.path().string(), 0, "",
-                     fmt::format("was written by {}, {} by {}: trials of the two must not mix",
-                                 input.Meta("polnav_version"), target.path().string(),
-                                 target.Meta("polnav_version")));
-  }
   if (target.Meta("identity") == input.Meta("identity")) return;
   throw InputError(input.path().string(), 0, "",
                    fmt::format("is of another study than {}: {}", target.path().string(),
@@ -105,15 +112,25 @@ void TakeTrialCount(SQLite::Database& db) {
       "i.key = 'trials' AND CAST(i.value AS INTEGER) > CAST(main.meta.value AS INTEGER)");
 }
 
+void TakeBuilds(SQLite::Database& db, const StudyDatabase& target, const StudyDatabase& input) {
+  for (const char* key : {"commit", "code"}) {
+    SQLite::Statement update(db, "UPDATE main.meta SET value = ? WHERE key = ?");
+    update.bind(1, JoinedNames(target.Meta(key), input.Meta(key)));
+    update.bind(2, key);
+    update.exec();
+  }
+}
+
 void Attach(SQLite::Database& db, const fs::path& path) {
   SQLite::Statement attach(db, "ATTACH DATABASE ? AS input");
   attach.bind(1, path.string());
   attach.exec();
 }
 
-void MergeOne(StudyDatabase& target, const fs::path& path, MergeResult& result) {
+void MergeOne(StudyDatabase& target, const fs::path& path, bool mix_builds, MergeResult& result) {
   const StudyDatabase input = StudyDatabase::OpenToRead(path);
   CheckSameStudy(target, input);
+  if (!mix_builds) CheckSameBuild(target, input);
   SQLite::Database& db = target.connection();
   input.Guarded([&] {
     Attach(db, path);
@@ -124,6 +141,7 @@ void MergeOne(StudyDatabase& target, const fs::path& path, MergeResult& result) 
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     TakeTrials(db);
     TakeTrialCount(db);
+    TakeBuilds(db, target, input);
     transaction.commit();
     const auto chosen = static_cast<std::uint64_t>(Number(db, "SELECT count(*) FROM temp.chosen"));
     result.added += chosen;
@@ -196,7 +214,8 @@ void MakeFrame(const fs::path& path, const fs::path& input) {
 
 }  // namespace
 
-MergeResult MergeStudies(const fs::path& out, const std::vector<fs::path>& inputs) {
+MergeResult MergeStudies(const fs::path& out, const std::vector<fs::path>& inputs,
+                         bool mix_builds) {
   std::error_code ignored;
   for (const fs::path& input : inputs) {
     if (fs::equivalent(input, out, ignored)) {
@@ -214,7 +233,7 @@ MergeResult MergeStudies(const fs::path& out, const std::vector<fs::path>& input
   MergeResult result;
   {
     StudyDatabase target = StudyDatabase::OpenToWrite(copy.path());
-    for (const fs::path& input : inputs) MergeOne(target, input, result);
+    for (const fs::path& input : inputs) MergeOne(target, input, mix_builds, result);
     result.outcomes = target.Outcomes();
     for (const auto& [outcome, count] : result.outcomes) result.present += count;
     result.expected = std::stoull(target.Meta("cases")) * std::stoull(target.Meta("trials"));

@@ -24,8 +24,9 @@ struct MergeResult {
 };
 
 // out is made when there is no such file. Throws InputError: files of different studies, trials
-// that contradict each other.
+// that contradict each other; files whose trials different code has run, unless mix_builds.
 [[nodiscard]] MergeResult MergeStudies(const std::filesystem::path& out,
-                                       const std::vector<std::filesystem::path>& inputs);
+                                       const std::vector<std::filesystem::path>& inputs,
+                                       bool mix_builds = false);
 
 }  // namespace polnav::testbed

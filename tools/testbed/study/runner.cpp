@@ -37,6 +37,10 @@ int Runner::Run() {
       if (worker) KillLate(worker);
     }
     hooks_.idle();
+    if (hooks_.enough && hooks_.enough()) {
+      workers_.clear();
+      return 0;
+    }
   }
 }
 

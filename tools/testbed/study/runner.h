@@ -32,14 +32,16 @@ struct RunnerHooks {
   std::function<void()> idle;
   // First thing in every worker process.
   std::function<void()> in_child;
+  // Asked after idle; true: trials that still run are given up. Never when empty.
+  std::function<bool()> enough = {};
 };
 
 class Runner {
  public:
   Runner(TrialFunction run, int jobs, const WorkerLimits& limits, RunnerHooks hooks);
 
-  // Returns the signal that stopped it, or 0 when all trials are done. After a signal no trial
-  // goes on, and what was unfinished counts as not begun.
+  // Returns the signal that stopped it, or 0 when all trials are done or enough of them. After a
+  // signal no trial goes on, and what was unfinished counts as not begun.
   [[nodiscard]] int Run();
 
  private:

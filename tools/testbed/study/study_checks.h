@@ -22,4 +22,8 @@ void CheckInputKeys(const YamlDocument& document, const std::vector<Dispersion>&
 void CheckStudyCriteria(const YamlDocument& document, const std::vector<StudyCriterion>& criteria,
                         const std::vector<StudyCase>& cases);
 
+// Sequential stopping: of independent trials, at looks that come before the last trial.
+void CheckStudyStop(const YamlDocument& document, const StudyOptions& options,
+                    const std::vector<StudyCase>& cases);
+
 }  // namespace polnav::testbed

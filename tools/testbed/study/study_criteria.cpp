@@ -6,64 +6,26 @@
 #include <cmath>
 
 #include "tools/testbed/result.h"
-#include "tools/testbed/statistics/mean.h"
-#include "tools/testbed/statistics/percentile.h"
 #include "tools/testbed/statistics/rate.h"
 #include "tools/testbed/study/aggregate.h"
 
 namespace polnav::testbed {
 namespace {
 
+constexpr const char* kOkRate = "ok_rate";
+
 std::optional<double> NumberAt(const Json& json, const char* key) {
   if (!json.contains(key) || !json[key].is_number()) return std::nullopt;
   return json[key].get<double>();
 }
 
-std::string TextAt(const Json& json, const char* key) {
-  return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
-}
-
-bool IsAbout(const StudyCriterionText& criterion, const TableCase& c) {
-  return (criterion.scenario.empty() || criterion.scenario == c.scenario) &&
-         (criterion.variant.empty() || criterion.variant == c.variant);
-}
-
-// "stereo heading_deg.rmse mean <= 1.5, 95 % interval"
+// "stereo heading_deg.rmse mean <= 1.5, the whole 95 % interval"
 std::string ExpectedText(const StudyCriterionText& c) {
-  std::string text = c.estimator.empty() ? "" : c.estimator + " ";
-  if (!c.metric.empty()) text += c.metric + " ";
-  text += c.statistic;
-  if (c.success_at_least) text += fmt::format(" of >= {}", *c.success_at_least);
-  if (c.success_at_most) text += fmt::format(" of <= {}", *c.success_at_most);
-  if (!c.below.empty()) text += fmt::format(" of the difference to {} < 0", c.below);
+  std::string text = NameOf(c.asked);
+  if (c.below) text += " < 0";
   if (c.at_most) text += fmt::format(" <= {}", *c.at_most);
   if (c.at_least) text += fmt::format(" >= {}", *c.at_least);
   return c.judge == "interval" ? text + ", the whole 95 % interval" : text;
-}
-
-Estimated StatisticOf(const std::string& statistic, std::vector<double> values,
-                      std::uint64_t seed) {
-  if (values.empty()) return {};
-  if (statistic == "mean") return MeanWithInterval(values, seed);
-  std::sort(values.begin(), values.end());
-  if (statistic == "std") return SpreadWithInterval(values);
-  if (statistic == "min") return {values.front(), {}};
-  if (statistic == "max") return {values.back(), {}};
-  for (const NamedPercentile& p : Percentiles()) {
-    if (statistic == p.name) return PercentileWithInterval(values, p.percent);
-  }
-  return {};
-}
-
-Estimated SuccessRate(const StudyCriterionText& criterion, const std::vector<double>& values) {
-  const auto successes = std::count_if(values.begin(), values.end(), [&](double v) {
-    return !std::isnan(v) && v >= criterion.success_at_least.value_or(-kInfinity) &&
-           v <= criterion.success_at_most.value_or(kInfinity);
-  });
-  if (values.empty()) return {};
-  const auto count = static_cast<std::uint64_t>(successes);
-  return {static_cast<double>(count) / static_cast<double>(values.size()),
-          ExactRateInterval(count, values.size())};
 }
 
 bool Holds(const StudyCriterionText& criterion, const Estimated& actual) {
@@ -72,28 +34,56 @@ bool Holds(const StudyCriterionText& criterion, const Estimated& actual) {
   const double low = interval ? actual.interval.lower : actual.value;
   const double high = interval ? actual.interval.upper : actual.value;
   return (!criterion.at_most || high <= *criterion.at_most) &&
-         (!criterion.at_least || low >= *criterion.at_least) &&
-         (criterion.below.empty() || high < 0.0);
+         (!criterion.at_least || low >= *criterion.at_least) && (!criterion.below || high < 0.0);
 }
 
-// Of one metric in all cases; those of no trial are empty.
-std::vector<CaseColumns> ReadMetric(const StudyTable& table, const std::string& estimator,
-                                    const std::string& metric) {
-  if (!table.HasMetric(metric)) return std::vector<CaseColumns>(table.cases().size());
-  return table.Read(estimator, {metric});
+StatisticOfTrials OkRate(const TableCase& c) {
+  const std::uint64_t n = c.Finished();
+  if (n == 0) return {};
+  const double share = static_cast<double>(c.Ok()) / static_cast<double>(n);
+  return {{share, ExactRateInterval(c.Ok(), n)}, n};
 }
 
-const std::vector<double>& ValuesOf(const CaseColumns& columns) {
-  static const std::vector<double> kNone;
-  return columns.columns.empty() ? kNone : columns.columns[0].values;
+void Judge(const StudyTable& table, const StudyCriterionText& criterion,
+           std::vector<StudyVerdict>& verdicts) {
+  const bool about_runs = criterion.asked.statistic == kOkRate;
+  const std::vector<TrialValues> values = about_runs
+                                              ? std::vector<TrialValues>(table.cases().size())
+                                              : ReadValues(table, criterion.asked);
+  for (std::size_t c = 0; c < table.cases().size(); ++c) {
+    const TableCase& the_case = table.cases()[c];
+    if (!IsAbout(criterion.asked, the_case)) continue;
+    const StatisticOfTrials measured =
+        about_runs ? OkRate(the_case) : Compute(criterion.asked, values[c].values, table.seed());
+    verdicts.push_back({.name = criterion.name,
+                        .label = the_case.label,
+                        .expected = ExpectedText(criterion),
+                        .n = measured.n,
+                        .actual = measured.actual,
+                        .passed = Holds(criterion, measured.actual)});
+  }
 }
 
-void JudgeOkRate(const StudyTable& table, std::size_t c, StudyVerdict& verdict) {
-  const TableCase& the_case = table.cases()[c];
-  verdict.n = the_case.Finished();
-  if (verdict.n == 0) return;
-  verdict.actual = {static_cast<double>(the_case.Ok()) / static_cast<double>(verdict.n),
-                    ExactRateInterval(the_case.Ok(), verdict.n)};
+// Cases whose ok_rate no criterion is about, and in which a trial did not go ok.
+void JudgeTheRest(const StudyTable& table, const std::vector<StudyCriterionText>& criteria,
+                  std::vector<StudyVerdict>& verdicts) {
+  const StudyCriterionText every{.name = "every trial goes ok",
+                                 .asked = {.statistic = kOkRate},
+                                 .judge = "value",
+                                 .at_least = 1.0};
+  for (const TableCase& c : table.cases()) {
+    const bool judged = std::any_of(criteria.begin(), criteria.end(), [&](const auto& criterion) {
+      return criterion.asked.statistic == kOkRate && IsAbout(criterion.asked, c);
+    });
+    const StatisticOfTrials measured = OkRate(c);
+    if (judged || measured.n == c.Ok()) continue;
+    verdicts.push_back({.name = every.name,
+                        .label = c.label,
+                        .expected = ExpectedText(every),
+                        .n = measured.n,
+                        .actual = measured.actual,
+                        .passed = false});
+  }
 }
 
 }  // namespace
@@ -102,19 +92,13 @@ std::vector<StudyCriterionText> CriteriaOf(const StudyTable& table) {
   std::vector<StudyCriterionText> criteria;
   if (!table.study().contains("criteria")) return criteria;
   for (const Json& json : table.study()["criteria"]) {
-    StudyCriterionText c{.name = TextAt(json, "name"),
-                         .scenario = TextAt(json, "scenario"),
-                         .variant = TextAt(json, "variant"),
-                         .estimator = TextAt(json, "estimator"),
-                         .metric = TextAt(json, "metric"),
-                         .statistic = TextAt(json, "statistic"),
-                         .below = TextAt(json, "below"),
-                         .judge = TextAt(json, "judge"),
-                         .success_at_least = NumberAt(json, "success_at_least"),
-                         .success_at_most = NumberAt(json, "success_at_most"),
+    StudyCriterionText c{.name = json.value("name", ""),
+                         .asked = ParseStudyStatistic(json),
+                         .judge = json.value("judge", "value"),
                          .at_most = NumberAt(json, "at_most"),
                          .at_least = NumberAt(json, "at_least")};
-    if (c.statistic.empty()) c.statistic = "mean";
+    c.asked.minus = json.value("below", "");
+    c.below = !c.asked.minus.empty();
     criteria.push_back(std::move(c));
   }
   return criteria;
@@ -122,36 +106,9 @@ std::vector<StudyCriterionText> CriteriaOf(const StudyTable& table) {
 
 std::vector<StudyVerdict> JudgeCriteria(const StudyTable& table) {
   std::vector<StudyVerdict> verdicts;
-  for (const StudyCriterionText& criterion : CriteriaOf(table)) {
-    const auto mine = ReadMetric(table, criterion.estimator, criterion.metric);
-    const auto other = criterion.below.empty()
-                           ? std::vector<CaseColumns>(mine.size())
-                           : ReadMetric(table, criterion.below, criterion.metric);
-    for (std::size_t c = 0; c < table.cases().size(); ++c) {
-      if (!IsAbout(criterion, table.cases()[c])) continue;
-      StudyVerdict verdict{.name = criterion.name,
-                           .label = table.cases()[c].label,
-                           .expected = ExpectedText(criterion)};
-      if (criterion.statistic == "ok_rate") {
-        JudgeOkRate(table, c, verdict);
-      } else if (criterion.statistic == "success_rate") {
-        verdict.n = ValuesOf(mine[c]).size();
-        verdict.actual = SuccessRate(criterion, ValuesOf(mine[c]));
-      } else if (criterion.below.empty()) {
-        std::vector<double> values = MetricColumn{ValuesOf(mine[c])}.Present();
-        verdict.n = values.size();
-        verdict.actual = StatisticOf(criterion.statistic, std::move(values), table.seed());
-      } else {
-        ValuePairs pairs =
-            PairUp(mine[c].trials, ValuesOf(mine[c]), other[c].trials, ValuesOf(other[c]));
-        for (std::size_t i = 0; i < pairs.a.size(); ++i) pairs.a[i] -= pairs.b[i];
-        verdict.n = pairs.a.size();
-        verdict.actual = StatisticOf(criterion.statistic, std::move(pairs.a), table.seed());
-      }
-      verdict.passed = Holds(criterion, verdict.actual);
-      verdicts.push_back(std::move(verdict));
-    }
-  }
+  const std::vector<StudyCriterionText> criteria = CriteriaOf(table);
+  for (const StudyCriterionText& criterion : criteria) Judge(table, criterion, verdicts);
+  JudgeTheRest(table, criteria, verdicts);
   return verdicts;
 }
 

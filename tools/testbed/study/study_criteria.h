@@ -3,7 +3,8 @@
 // A criterion is about one statistic over the trials of a case that went ok, and is judged in every
 // case that it is about. `below` is about the paired differences to another estimator. Judged by
 // the value that was measured, or with `judge: interval` by the whole 95 % interval (rates: Clopper
-// and Pearson's); an end that is unbounded then fails.
+// and Pearson's); an end that is unbounded then fails. Where no criterion is about the ok_rate of a
+// case, every trial of it must go ok.
 #pragma once
 
 #include <optional>
@@ -12,16 +13,21 @@
 
 #include "tools/testbed/option_tree.h"
 #include "tools/testbed/statistics/interval.h"
+#include "tools/testbed/study/study_statistic.h"
 #include "tools/testbed/study/study_table.h"
 
 namespace polnav::testbed {
 
 // As the result file's definition has it.
 struct StudyCriterionText {
-  std::string name, scenario, variant, estimator, metric, statistic, below, judge;
-  std::optional<double> success_at_least, success_at_most, at_most, at_least;
+  std::string name;
+  StudyStatistic asked;
+  bool below = false;  // asked.minus: less than it
+  std::string judge;
+  std::optional<double> at_most, at_least;
 };
 
+// Those of the study file.
 [[nodiscard]] std::vector<StudyCriterionText> CriteriaOf(const StudyTable& table);
 
 struct StudyVerdict {

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <sstream>
+
+#include "tools/testbed/build_id.h"
 #include "tools/testbed/hash.h"
 #include "tools/testbed/input_error.h"
 #include "tools/testbed/report.h"
@@ -48,6 +51,16 @@ int HexDigit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
 
 }  // namespace
 
+std::string JoinedNames(const std::string& some, const std::string& more) {
+  std::string joined = some;
+  std::stringstream stream(more);
+  for (std::string name; std::getline(stream >> std::ws, name, ',');) {
+    if ((", " + joined + ", ").find(", " + name + ", ") != std::string::npos) continue;
+    joined.append(joined.empty() ? "" : ", ").append(name);
+  }
+  return joined;
+}
+
 std::string ToHex(const std::string& bytes) {
   std::string hex;
   for (const char c : bytes) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
@@ -92,13 +105,14 @@ void StudyDatabase::Guarded(const std::function<void()>& action) const {
 }
 
 StudyDatabase StudyDatabase::Create(const std::filesystem::path& path, const StudyPlan& plan,
-                                    const std::string& study_file) {
+                                    const std::string& study_file, bool mix_builds) {
   StudyDatabase study(path, true);
   study.Guarded([&] {
     const bool is_new = study.IsEmpty();
     if (!is_new) {
       study.CheckSchema();
       study.CheckIdentity(plan);
+      if (!mix_builds) study.CheckBuild();
     }
     study.db_->exec("PRAGMA journal_mode=WAL");
     study.db_->exec("PRAGMA synchronous=NORMAL");
@@ -135,14 +149,19 @@ void StudyDatabase::CheckSchema() const {
   CheckStudySchema(*db_, path_, ": use that one, or give another file with --out");
 }
 
+void StudyDatabase::CheckBuild() const {
+  const BuildId build = ThisBuild();
+  if (Meta("code") == build.code && Meta("polnav_version") == VersionText()) return;
+  throw InputError(
+      path_.string(), 0, "",
+      fmt::format(
+          "its trials were run by other code: commit {} of {}; this is commit {} of {}. Go "
+          "on with that one, give another file with --out, or mix the two with --mix-builds "
+          "(--trial K tells whether both get the same of trial K)",
+          Meta("commit"), Meta("polnav_version"), build.commit, VersionText()));
+}
+
 void StudyDatabase::CheckIdentity(const StudyPlan& plan) const {
-  const std::string version = Meta("polnav_version");
-  if (version != VersionText()) {
-    throw InputError(path_.string(), 0, "",
-                     fmt::format("was written by {}, this is {}: trials of the two must not mix. "
-                                 "Give another file with --out",
-                                 version, VersionText()));
-  }
   if (Meta("identity") == Sha256Of(plan.identity().dump())) return;
   throw InputError(
       path_.string(), 0, "",
@@ -183,12 +202,19 @@ void StudyDatabase::DescribeStudy(const StudyPlan& plan, const std::string& stud
   SetMeta("identity", Sha256Of(plan.identity().dump()));
   SetMeta("identity_values", plan.identity().dump());
   SetMeta("polnav_version", VersionText());
+  AddBuild();
   SetMeta("level", options.level);
   SetMeta("seed", fmt::format("{}", options.seed));
   SetMeta("cases", fmt::format("{}", plan.cases().size()));
   SetMeta("trials", fmt::format("{}", options.trials));
   SetMeta("definition", plan.Definition().dump());
   SetMeta("study_file", study_file);
+}
+
+void StudyDatabase::AddBuild() {
+  const BuildId build = ThisBuild();
+  SetMeta("commit", JoinedNames(Meta("commit"), build.commit));
+  SetMeta("code", JoinedNames(Meta("code"), build.code));
 }
 
 void StudyDatabase::SetMeta(const std::string& key, const std::string& value) {

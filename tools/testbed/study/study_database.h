@@ -33,15 +33,19 @@ struct StoredTrial {
 
 class StudyDatabase {
  public:
-  // Makes the file, or goes on with one of the same study. study_file: as typed.
+  // Makes the file, or goes on with one of the same study. study_file: as typed. mix_builds: also
+  // with one whose trials other code has run.
   [[nodiscard]] static StudyDatabase Create(const std::filesystem::path& path,
-                                            const StudyPlan& plan, const std::string& study_file);
+                                            const StudyPlan& plan, const std::string& study_file,
+                                            bool mix_builds = false);
   [[nodiscard]] static StudyDatabase OpenToRead(const std::filesystem::path& path);
   // An existing study, to merge into.
   [[nodiscard]] static StudyDatabase OpenToWrite(const std::filesystem::path& path);
 
-  // Throws when the file is of another study or another version of polnav.
+  // Throws when the file is of another study.
   void CheckIdentity(const StudyPlan& plan) const;
+  // Throws when other code has run trials of it.
+  void CheckBuild() const;
 
   // Empty when there is no such fact.
   [[nodiscard]] std::string Meta(const std::string& key) const;
@@ -78,6 +82,7 @@ class StudyDatabase {
   void CheckSchema() const;
   void MakeTables(const StudyPlan& plan);
   void DescribeStudy(const StudyPlan& plan, const std::string& study_file);
+  void AddBuild();
   void SetMeta(const std::string& key, const std::string& value);
   void Insert(const TrialRecord& record);
   void InsertScore(std::uint64_t trial, const TrialScore& score);
@@ -89,6 +94,9 @@ class StudyDatabase {
   std::map<std::string, std::unique_ptr<SQLite::Statement>> prepared_;
   std::set<std::string> score_columns_;
 };
+
+// "a, b" and "b, c": "a, b, c". Of commits, of code.
+[[nodiscard]] std::string JoinedNames(const std::string& some, const std::string& more);
 
 // Bytes to lower-case hexadecimal digits and back.
 [[nodiscard]] std::string ToHex(const std::string& bytes);

@@ -167,6 +167,36 @@ struct StudyCriterion {
   }
 };
 
+// Something to be known to within a half-width of its 95 % interval before the study ends, in every
+// case or in those of one scenario or variant.
+struct StudyStopOptions {
+  std::string scenario;
+  std::string variant;
+  std::string estimator;
+  std::string metric;
+  std::string minus;  // another estimator: of the paired difference to it
+  std::string statistic = "mean";
+  std::optional<double> success_at_least;  // success_rate, as in criteria
+  std::optional<double> success_at_most;
+  // One of the two: in the metric's unit, or as a share of the statistic's magnitude.
+  std::optional<double> half_width;
+  std::optional<double> relative_half_width;
+
+  template <typename Visitor>
+  void Visit(Visitor& v) {
+    v("scenario", scenario);
+    v("variant", variant);
+    v("estimator", estimator);
+    v("metric", metric);
+    v("minus", minus);
+    v("statistic", statistic, {"mean", "median", "success_rate"});
+    v("success_at_least", success_at_least);
+    v("success_at_most", success_at_most);
+    v("half_width", half_width, {.min = 1e-300, .max = 1e300});
+    v("relative_half_width", relative_half_width, {.min = 1e-6, .max = 1.0});
+  }
+};
+
 struct StudyOptions {
   std::string name;
   std::string description;
@@ -174,7 +204,7 @@ struct StudyOptions {
   std::vector<VariantOptions> variants;  // empty: the scenario as it is
   NamedLists grid;                       // key: [values]; all combinations
   std::vector<std::string> estimators;   // empty: as each scenario says
-  int trials = 100;                      // of each case
+  int trials = 100;                      // of each case; with `stop`, at most
   std::uint64_t seed = 1;
   std::string level = "image";
   std::optional<double> duration_s;
@@ -184,6 +214,7 @@ struct StudyOptions {
   double time_limit_s = 3600.0;     // of a trial, wall time
   double memory_limit_mb = 4096.0;  // of a trial
   SeriesOptions series;
+  std::vector<StudyStopOptions> stop;  // empty: after all trials; else when all of these are known
   std::vector<StudyCriterion> criteria;
 
   template <typename Visitor>
@@ -204,6 +235,7 @@ struct StudyOptions {
     v("time_limit_s", time_limit_s, {.min = 0.01, .max = 1e7});
     v("memory_limit_mb", memory_limit_mb, {.min = 64.0, .max = 1e9});
     v("series", series);
+    v("stop", stop);
     v("criteria", criteria);
   }
 };

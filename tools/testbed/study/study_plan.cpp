@@ -12,6 +12,7 @@
 #include "tools/testbed/hash.h"
 #include "tools/testbed/input_error.h"
 #include "tools/testbed/option_loader.h"
+#include "tools/testbed/paper_tables.h"
 #include "tools/testbed/study/study_checks.h"
 
 namespace polnav::testbed {
@@ -38,6 +39,16 @@ std::string ScenarioSha256(Scenario scenario) {
   return Sha256Of(ResolvedYaml(scenario));
 }
 
+Json PaperJson(const Scenario& scenario) {
+  Json json = Json::object();
+  for (const auto& [metric, figures] : PaperFigures(scenario)) {
+    for (const PaperFigure& figure : figures) {
+      json[metric].push_back({{"label", figure.label}, {"value", figure.value}});
+    }
+  }
+  return json;
+}
+
 std::string LineSource(const YamlDocument& document, const std::string& key_path) {
   try {
     FailAt(document, key_path, "");
@@ -57,6 +68,7 @@ StudyPlan::StudyPlan(YamlDocument document, const std::filesystem::path& folder)
   for (std::size_t i = 0; i < cases_.size(); ++i) CheckCase(cases_[i], i);
   CheckRanges();
   CheckStudyCriteria(document_, options_.criteria, cases_);
+  CheckStudyStop(document_, options_, cases_);
   BuildIdentity();
 }
 
@@ -172,6 +184,12 @@ void StudyPlan::CheckCase(StudyCase& study_case, std::size_t case_id) {
     throw InputError(study_case.path.string(), 0, "estimators.run", "a study needs an estimator");
   }
   study_case.sha256 = ScenarioSha256(scenario);
+  study_case.paper = PaperJson(scenario);
+  YamlDocument document = ParseYaml(*study_case.text, study_case.path.string());
+  for (const auto& [assignment, source] : study_case.overrides) {
+    ApplyOverride(document, assignment, source);
+  }
+  study_case.document = std::make_shared<const YamlDocument>(std::move(document));
   if (dispersions_.empty()) return;
   std::optional<InputError> first_error;
   const auto tried = std::min(kSamplesTried, static_cast<std::uint64_t>(options_.trials));
@@ -224,7 +242,7 @@ PlannedTrial StudyPlan::At(std::uint64_t trial) const {
 
 Scenario StudyPlan::ScenarioOf(const PlannedTrial& trial) const {
   const StudyCase& study_case = cases_[trial.case_id];
-  std::vector<ScenarioOverride> overrides = study_case.overrides;
+  std::vector<ScenarioOverride> overrides;
   for (const Dispersion& dispersion : dispersions_) {
     for (const std::string& key : dispersion.keys()) {
       const auto input = std::find_if(trial.inputs.begin(), trial.inputs.end(),
@@ -232,7 +250,7 @@ Scenario StudyPlan::ScenarioOf(const PlannedTrial& trial) const {
       overrides.push_back({key + "=" + input->text, LineSource(document_, dispersion.entry())});
     }
   }
-  return ParseScenario(*study_case.text, study_case.path.string(), overrides, level());
+  return testbed::ScenarioOf(*study_case.document, overrides, level());
 }
 
 std::vector<std::pair<std::string, bool>> StudyPlan::InputKeys() const {
@@ -275,7 +293,8 @@ Json StudyPlan::Definition() const {
                                    {"variant", c.variant},
                                    {"grid", grid},
                                    {"label", c.label},
-                                   {"estimators", c.estimators}});
+                                   {"estimators", c.estimators},
+                                   {"paper", c.paper}});
   }
   return definition;
 }

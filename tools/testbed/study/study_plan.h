@@ -31,7 +31,9 @@ struct StudyCase {
   std::filesystem::path path;
   std::shared_ptr<const std::string> text;  // of the scenario file
   std::vector<ScenarioOverride> overrides;
+  std::shared_ptr<const YamlDocument> document;  // with the overrides; read once for all trials
   std::string sha256;  // of the scenario with all its values, before dispersions
+  Json paper;          // metric -> [{label, value}]: what the scenario's paper has
 };
 
 struct PlannedTrial {

@@ -5,8 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "tools/testbed/input_error.h"
 #include "tools/testbed/study/file_lock.h"
 #include "tools/testbed/study/runner.h"
+#include "tools/testbed/study/stop_gate.h"
+#include "tools/testbed/study/study_stop.h"
+#include "tools/testbed/study/study_table.h"
 
 namespace polnav::testbed {
 namespace {
@@ -53,6 +57,30 @@ TrialFunction TrialOf(const StudyPlan& plan, const ClosedLoopFunction& closed_lo
   };
 }
 
+// A part of a study does not see the trials before a look.
+void CheckShard(const StudyPlan& plan, const StudyRunOptions& options) {
+  if (plan.options().stop.empty() || options.shard.count == 1) return;
+  throw InputError(options.study_file, 0, "stop",
+                   fmt::format("a look sees all trials before it, and a shard ({} of {}) has only "
+                               "its own: run the study without shards, or without stop",
+                               options.shard.index == 0 ? options.shard.count : options.shard.index,
+                               options.shard.count));
+}
+
+// Empty for a study without `stop`.
+StopGate::Look LookOf(const StudyPlan& plan, StudyDatabase& database) {
+  if (plan.options().stop.empty()) return {};
+  return [&database](std::uint64_t samples) {
+    bool enough = false;
+    database.Guarded([&] { enough = LookAt(StudyTable(database.connection()), samples).Enough(); });
+    return enough;
+  };
+}
+
+std::uint64_t EndOf(const StudyPlan& plan, const StopGate& gate) {
+  return *gate.ended_at() * plan.cases().size();
+}
+
 void MakeFolder(const std::filesystem::path& file) {
   std::error_code ignored;  // the lock says what is wrong
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
@@ -63,29 +91,34 @@ void MakeFolder(const std::filesystem::path& file) {
 StudyRunResult RunStudy(const StudyPlan& plan, const StudyRunOptions& options,
                         const ClosedLoopFunction& closed_loop,
                         const std::function<void(const StudyCounts&)>& progress) {
+  CheckShard(plan, options);
   MakeFolder(options.out);
   FileLock lock(options.out);
-  StudyDatabase database = StudyDatabase::Create(options.out, plan, options.study_file);
-  Queue queue(database.Finished(plan.trial_count(), options.retry_failed), options.shard);
+  StudyDatabase database =
+      StudyDatabase::Create(options.out, plan, options.study_file, options.mix_builds);
+  const std::vector<bool> written = database.Finished(plan.trial_count(), options.retry_failed);
+  Queue queue(written, options.shard);
   StudyRunResult result{.signal = 0, .counts = queue.Count(), .outcomes = {}, .digest = ""};
+  StopGate gate(plan.cases().size(), written, LookOf(plan, database));
 
   // Trials that finish within a tenth of a second share a transaction.
-  std::vector<TrialRecord> finished;
   const auto write = [&] {
-    database.Write(finished);
-    finished.clear();
+    for (auto records = gate.Take(); !records.empty(); records = gate.Take()) {
+      database.Write(records);
+      gate.Written(records);
+    }
     progress(result.counts);
   };
   auto last_write = std::chrono::steady_clock::now();
   const RunnerHooks hooks{
-      .next = [&] { return queue.Next(); },
+      .next = [&] { return gate.ended_at() ? std::nullopt : queue.Next(); },
       .empty_record =
           [&](std::uint64_t trial) { return EmptyRecord(plan.At(trial), Outcome::kFailed, ""); },
       .finished =
           [&](TrialRecord record) {
             ++result.counts.done;
             if (record.outcome != Outcome::kOk) ++result.counts.failed;
-            finished.push_back(std::move(record));
+            gate.Add(std::move(record));
           },
       .idle =
           [&] {
@@ -94,9 +127,11 @@ StudyRunResult RunStudy(const StudyPlan& plan, const StudyRunOptions& options,
             last_write = now;
             write();
           },
-      .in_child = [&] { lock.Forget(); }};
+      .in_child = [&] { lock.Forget(); },
+      .enough = [&] { return gate.ended_at().has_value(); }};
   result.signal = Runner(TrialOf(plan, closed_loop), options.jobs, LimitsOf(plan), hooks).Run();
   write();
+  if (gate.ended_at()) result.counts.done = result.counts.total = EndOf(plan, gate);
   result.outcomes = database.Outcomes();
   result.digest = database.Digest();
   database.Close();

@@ -19,13 +19,14 @@ struct StudyRunOptions {
   int jobs = 1;
   Shard shard;
   bool retry_failed = false;
+  bool mix_builds = false;  // go on with a file whose trials other code has run
   std::filesystem::path out;
   std::string study_file;  // as typed
 };
 
 // Of this process's share.
 struct StudyCounts {
-  std::uint64_t total = 0;
+  std::uint64_t total = 0;    // with `stop`, at most; when it has ended, those that count
   std::uint64_t done = 0;     // in the file or about to be
   std::uint64_t resumed = 0;  // of them, were there at the start
   std::uint64_t failed = 0;   // of those run now, not ok

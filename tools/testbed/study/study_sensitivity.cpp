@@ -52,7 +52,7 @@ void AddSensitivities(const StudyTable& table, const std::vector<std::string>& m
   }
   for (const std::string& estimator : table.estimators()) {
     if (estimator.empty()) continue;
-    const std::vector<CaseColumns> scores = table.Read(estimator, metrics);
+    const std::vector<CaseColumns> scores = table.Read(estimator, metrics, kSensitivityTrials);
     for (std::size_t c = 0; c < scores.size(); ++c) {
       if (scores[c].trials.empty()) continue;
       Json& sensitivity = cases[c]["estimators"][estimator]["sensitivity"];

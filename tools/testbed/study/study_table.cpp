@@ -1,5 +1,7 @@
 #include "tools/testbed/study/study_table.h"
 
+#include <sqlite3.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,6 +46,7 @@ std::vector<TableCase> CasesOf(SQLite::Database& db) {
                      .variant = query.getColumn(2).getString(),
                      .label = query.getColumn(3).getString(),
                      .grid = Json::parse(query.getColumn(4).getString()),
+                     .paper = Json::object(),
                      .outcomes = {}});
   }
   SQLite::Statement outcomes(
@@ -55,6 +58,46 @@ std::vector<TableCase> CasesOf(SQLite::Database& db) {
   }
   return cases;
 }
+
+// A query by sqlite3 itself: SQLiteCpp makes an object of each value, and a million trials have a
+// hundred million of them.
+class NumberQuery {
+ public:
+  NumberQuery(SQLite::Database& db, const std::string& sql, const std::string& text,
+              std::uint64_t number)
+      : db_(db.getHandle()) {
+    Check(sqlite3_prepare_v2(db_, sql.c_str(), -1, &statement_, nullptr));
+    Check(sqlite3_bind_text(statement_, 1, text.c_str(), -1, SQLITE_TRANSIENT));
+    Check(sqlite3_bind_int64(statement_, 2, static_cast<std::int64_t>(number)));
+  }
+  ~NumberQuery() { sqlite3_finalize(statement_); }
+  NumberQuery(const NumberQuery&) = delete;
+  NumberQuery& operator=(const NumberQuery&) = delete;
+
+  bool Step() {
+    const int code = sqlite3_step(statement_);
+    if (code == SQLITE_ROW) return true;
+    if (code != SQLITE_DONE) throw SQLite::Exception(db_, code);
+    return false;
+  }
+  [[nodiscard]] std::int64_t Integer(int column) const {
+    return sqlite3_column_int64(statement_, column);
+  }
+  // NaN when null.
+  [[nodiscard]] double Number(int column) const {
+    return sqlite3_column_type(statement_, column) == SQLITE_NULL
+               ? kNaN
+               : sqlite3_column_double(statement_, column);
+  }
+
+ private:
+  void Check(int code) const {
+    if (code != SQLITE_OK) throw SQLite::Exception(db_, code);
+  }
+
+  sqlite3* db_;
+  sqlite3_stmt* statement_ = nullptr;
+};
 
 }  // namespace
 
@@ -78,7 +121,8 @@ std::vector<double> MetricColumn::Present() const {
   return present;
 }
 
-StudyTable::StudyTable(SQLite::Database& db) : db_(db), cases_(CasesOf(db)) {
+StudyTable::StudyTable(SQLite::Database& db)
+    : db_(db), cases_(CasesOf(db)), study_(Json::object()) {
   if (cases_.empty()) throw std::logic_error("a study without cases");
   for (const std::string& column : Strings(db, "PRAGMA table_info(scores)", 1)) {
     if (column != "estimator" && column != "trial" && column != "sha256") {
@@ -91,7 +135,12 @@ StudyTable::StudyTable(SQLite::Database& db) : db_(db), cases_(CasesOf(db)) {
   SQLite::Statement meta(db, "SELECT key, value FROM meta");
   while (meta.executeStep()) meta_[meta.getColumn(0).getString()] = meta.getColumn(1).getString();
   const Json definition = Json::parse(Meta("definition"), nullptr, false);
-  study_ = definition.is_object() ? definition.value("study", Json::object()) : Json::object();
+  if (!definition.is_object()) return;
+  study_ = definition.value("study", Json::object());
+  const Json cases = definition.value("cases", Json::array());
+  for (std::size_t c = 0; c < std::min(cases_.size(), cases.size()); ++c) {
+    cases_[c].paper = cases[c].value("paper", Json::object());
+  }
 }
 
 std::string StudyTable::Meta(const std::string& key) const {
@@ -109,24 +158,27 @@ bool StudyTable::HasMetric(const std::string& metric) const {
 }
 
 std::vector<CaseColumns> StudyTable::Read(const std::string& estimator,
-                                          const std::vector<std::string>& metrics) const {
+                                          const std::vector<std::string>& metrics,
+                                          std::uint64_t most) const {
   std::vector<CaseColumns> read(cases_.size());
   std::string sql = "SELECT trial";
   for (const std::string& metric : metrics) sql += ", " + QuotedName(metric);
   for (std::size_t c = 0; c < cases_.size(); ++c) {
+    const std::uint64_t expected = std::min(most, cases_[c].Ok());
     read[c].columns.resize(metrics.size());
-    read[c].trials.reserve(cases_[c].Ok());
-    for (MetricColumn& column : read[c].columns) column.values.reserve(cases_[c].Ok());
+    read[c].trials.reserve(expected);
+    for (MetricColumn& column : read[c].columns) column.values.reserve(expected);
   }
-  SQLite::Statement query(db_, sql + " FROM scores WHERE estimator = ? ORDER BY trial");
-  query.bind(1, estimator);
-  while (query.executeStep()) {
-    const auto trial = static_cast<std::uint64_t>(query.getColumn(0).getInt64());
+  constexpr auto kLast = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const std::uint64_t end = most < kLast / cases_.size() ? most * cases_.size() : kLast;
+  NumberQuery query(db_, sql + " FROM scores WHERE estimator = ? AND trial < ? ORDER BY trial",
+                    estimator, end);
+  while (query.Step()) {
+    const auto trial = static_cast<std::uint64_t>(query.Integer(0));
     CaseColumns& columns = read[CaseOf(trial)];
     columns.trials.push_back(trial);
     for (std::size_t m = 0; m < metrics.size(); ++m) {
-      const SQLite::Column value = query.getColumn(static_cast<int>(m) + 1);
-      columns.columns[m].values.push_back(value.isNull() ? kNaN : value.getDouble());
+      columns.columns[m].values.push_back(query.Number(static_cast<int>(m) + 1));
     }
   }
   return read;

@@ -7,6 +7,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct TableCase {
   std::string variant;
   std::string label;
   Json grid;
+  Json paper;  // metric -> [{label, value}]; an object
   std::map<std::string, std::uint64_t> outcomes;
 
   [[nodiscard]] std::uint64_t Finished() const;
@@ -61,9 +63,10 @@ class StudyTable {
   [[nodiscard]] const Json& study() const { return study_; }  // the study file with its defaults
   [[nodiscard]] bool HasMetric(const std::string& metric) const;
 
-  // One entry a case.
-  [[nodiscard]] std::vector<CaseColumns> Read(const std::string& estimator,
-                                              const std::vector<std::string>& metrics) const;
+  // One entry a case; of the first `most` samples of it.
+  [[nodiscard]] std::vector<CaseColumns> Read(
+      const std::string& estimator, const std::vector<std::string>& metrics,
+      std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   // Of the first `most` samples of each case.
   [[nodiscard]] std::vector<InputColumn> ReadInput(const std::string& key,
                                                    std::uint64_t most) const;
