@@ -6,7 +6,7 @@
 #include "tests/testbed/example_run.h"
 #include "tools/testbed/report.h"
 #include "tools/testbed/report/chart_data.h"
-#include "tools/testbed/report/disturbed_times.h"
+#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/result.h"
 
 namespace polnav::testbed {
@@ -94,7 +94,7 @@ TEST(DisturbedTimes, AreWhenItHappensAndWhenTheCarIsThere) {
     t.T_WB.p << track.At(0.2 * i).p_m, 0.0;
     truth.push_back(t);
   }
-  const std::vector<Stretch> times = DisturbedTimes(scenario, truth);
+  const std::vector<Stretch> times = DisturbedTimes(scenario, 0, truth);
   ASSERT_EQ(times.size(), 3U);
   EXPECT_EQ(times[0].begin_s, 18.0);
   EXPECT_EQ(times[0].end_s, 24.0);

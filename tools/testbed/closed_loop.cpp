@@ -6,6 +6,7 @@
 #include "sim/measurement_stream.h"
 #include "tools/testbed/calibration_turn.h"
 #include "tools/testbed/dataset/euroc_writer.h"
+#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/ground_truth_files.h"
 #include "tools/testbed/listener.h"
 #include "tools/testbed/sightings.h"
@@ -62,6 +63,7 @@ class Loop {
     if (ground_truth_) ground_truth_->Commit();
     RunRecord record = listener_.Finish();
     for (const auto& [stage, ms] : stream.picture_ms()) record.timing[stage].ms = ms;
+    record.disturbed = DisturbedTimes(scenario_, key_.trial, record.truth);
     record.sim_duration_s = scenario_.duration_s;
     record.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
     return record;

@@ -112,6 +112,11 @@ bool IsMetric(const std::string& path) {
     return FindInfo(parts[1]) != nullptr &&
            (parts[4] == "mean" || parts[4] == "count" || parts[4] == "gated");
   }
+  // Of runs that are disturbed.
+  if (parts.size() == 4 && parts[0] == "estimators" && parts[2] == "recovery") {
+    return FindInfo(parts[1]) != nullptr &&
+           (parts[3] == "heading_s" || parts[3] == "tracking_s" || parts[3] == "disturbances");
+  }
   static const std::vector<std::string> all = [] {
     std::vector<std::string> metrics = AllMetrics();
     std::sort(metrics.begin(), metrics.end());

@@ -6,6 +6,7 @@
 
 #include "tools/testbed/hash.h"
 #include "tools/testbed/metrics.h"
+#include "tools/testbed/recovery.h"
 #include "tools/testbed/score.h"
 #include "tools/testbed/statistics.h"
 
@@ -28,13 +29,20 @@ Json ToJson(const OutcomeCounts& counts) {
           {"failed_solves", counts.failed_solves}};
 }
 
+Json ToJson(const Recovery& recovery) {
+  return {{"heading_s", recovery.heading_s ? Json(*recovery.heading_s) : Json(nullptr)},
+          {"tracking_s", recovery.tracking_s},
+          {"disturbances", recovery.disturbances}};
+}
+
 // A compass that finds no heading in a picture answers nothing.
 double AnsweredFraction(const OutcomeCounts& counts) {
   const auto asked = static_cast<double>(counts.used + counts.gated + counts.unusable);
   return asked > 0.0 ? static_cast<double>(counts.used) / asked : 0.0;
 }
 
-Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
+Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth,
+                   const std::vector<Stretch>& disturbed) {
   Json json = {{"sha256", run.sha256}};
   if (const Json diagnostics = testbed::ToJson(run.diagnostics); !diagnostics.is_null()) {
     json["diagnostics"] = diagnostics;
@@ -46,6 +54,10 @@ Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth) {
   if (const auto score = Score(truth, run.estimates, run.heading_only)) {
     json.update(testbed::ToJson(*score));
     if (run.heading_only) json["tracked_fraction"] = AnsweredFraction(run.counts);
+    const ErrorSeries errors = ComputeErrors(truth, run.estimates, run.heading_only);
+    if (const auto recovery = ScoreRecovery(disturbed, errors, run.estimates)) {
+      json["recovery"] = ToJson(*recovery);
+    }
   } else {
     json["tracked_fraction"] = 0.0;
   }
@@ -175,7 +187,7 @@ Json BuildResult(const Scenario& scenario, const RunRecord& record, std::uint64_
   result["estimators"] = Json::object();
   const Trajectory truth = TrajectoryOf(record.truth);
   for (const EstimatorRun& run : record.estimators) {
-    result["estimators"][run.name] = EstimatorJson(run, truth);
+    result["estimators"][run.name] = EstimatorJson(run, truth, record.disturbed);
   }
   const std::vector<CriterionResult> criteria = EvaluateCriteria(scenario, result);
   result["criteria"] = Json::array();

@@ -70,8 +70,15 @@ struct HeadingReading {
   double error_rad = 0.0;
 };
 
+// A part of the run.
+struct Stretch {
+  double begin_s = 0.0;
+  double end_s = 0.0;
+};
+
 struct RunRecord {
-  std::vector<sim::Truth> truth;  // at the cameras' rate
+  std::vector<sim::Truth> truth;   // at the cameras' rate
+  std::vector<Stretch> disturbed;  // see disturbed_times.h
   std::vector<EstimatorRun> estimators;
   std::map<std::string, StreamRecord> streams;
   std::map<std::string, StageTiming> timing;

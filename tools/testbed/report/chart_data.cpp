@@ -5,7 +5,7 @@
 
 #include "tools/testbed/report.h"
 #include "tools/testbed/report/diagnostic_data.h"
-#include "tools/testbed/report/disturbed_times.h"
+#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/score.h"
 #include "tools/testbed/trajectory.h"
 
@@ -134,7 +134,7 @@ Json ChartData(const RunRecord& record, const Scenario& scenario) {
   data["readings"] = ReadingData(record.polarization_readings);
   data["memory"] = MemoryData(record);
   data["faults"] = StretchData(FaultTimes(scenario.faults, record.sim_duration_s));
-  data["disturbances"] = StretchData(DisturbedTimes(scenario, record.truth));
+  data["disturbances"] = StretchData(record.disturbed);
   return data;
 }
 

@@ -1,4 +1,4 @@
-#include "tools/testbed/report/disturbed_times.h"
+#include "tools/testbed/disturbed_times.h"
 
 #include <cmath>
 
@@ -15,7 +15,7 @@ const std::optional<sim::StretchOptions>& RoadOf(const sim::DisturbanceOptions& 
   return entry.bridge;
 }
 
-// Where along the lap the car was at each truth.
+// Where along the lap the vehicle was at each truth.
 std::vector<double> ArcLengths(const sim::Track& track, const std::vector<sim::Truth>& truth) {
   std::vector<double> s_m;
   for (const sim::Truth& t : truth) s_m.push_back(track.Project(t.T_WB.p.head<2>()).s_m);
@@ -39,14 +39,13 @@ void AddPassages(const sim::StretchOptions& road, double lap_m,
 
 }  // namespace
 
-std::vector<Stretch> DisturbedTimes(const Scenario& scenario,
+std::vector<Stretch> DisturbedTimes(const Scenario& scenario, std::uint64_t trial,
                                     const std::vector<sim::Truth>& truth) {
   std::vector<Stretch> times;
-  for (const sim::DisturbanceEvent& event :
-       sim::ScheduleDisturbances(scenario.disturbances, scenario.duration_s, scenario.seed, 0)) {
+  for (const sim::DisturbanceEvent& event : sim::ScheduleDisturbances(
+           scenario.disturbances, scenario.duration_s, scenario.seed, trial)) {
     times.push_back({event.start_s, event.end_s});
   }
-  if (!scenario.vehicle.car) return times;
   const sim::Track track(scenario.world.track);
   std::vector<double> s_m;
   for (const sim::DisturbanceOptions& entry : scenario.disturbances) {

@@ -1,6 +1,7 @@
 // When was the run disturbed?
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "tools/testbed/run_record.h"
@@ -8,14 +9,9 @@
 
 namespace polnav::testbed {
 
-struct Stretch {
-  double begin_s = 0.0;
-  double end_s = 0.0;
-};
-
 // Of every disturbance: when it happened in this trial, or, where it is a part of the road, when
-// the car was on it.
-[[nodiscard]] std::vector<Stretch> DisturbedTimes(const Scenario& scenario,
+// the vehicle was on it.
+[[nodiscard]] std::vector<Stretch> DisturbedTimes(const Scenario& scenario, std::uint64_t trial,
                                                   const std::vector<sim::Truth>& truth);
 
 // Of every fault, up to the end of the run.
