@@ -11,7 +11,7 @@ namespace polnav::nav::ukf {
 namespace {
 
 constexpr double kFlicker_s = 30.0;
-constexpr double kStep_s = 0.02;  // between two readings of the flow, the swing errs one way
+constexpr double kStep_s = 0.02;     // between two readings of the flow, the swing errs one way
 constexpr int kCurved = 6;           // attitude and rate
 constexpr Eigen::Index kMoved = 9;   // theta, u, p: what an interval changes by more than a factor
 constexpr Eigen::Index kLinear = 6;  // of these, what the curved directions leave: u, p

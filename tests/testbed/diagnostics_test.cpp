@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/testbed/example_run.h"
+#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/report.h"
 #include "tools/testbed/report/chart_data.h"
-#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/result.h"
 
 namespace polnav::testbed {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/report.h"
 #include "tools/testbed/report/diagnostic_data.h"
-#include "tools/testbed/disturbed_times.h"
 #include "tools/testbed/score.h"
 #include "tools/testbed/trajectory.h"
 
