@@ -10,6 +10,9 @@ namespace polnav::sim {
 namespace {
 
 constexpr std::size_t kSlotsMax = 1024;  // some seconds of all sensors
+// Handed over at once where no picture is under way: to wake a thread for every reading costs more
+// than the reading.
+constexpr std::size_t kBatch = 128;
 
 }  // namespace
 
@@ -101,8 +104,13 @@ bool MeasurementStream::Put(StreamItem item) {
   std::unique_lock lock(mutex_);
   if (!WaitForRoom(lock)) return false;
   slots_.emplace_back(std::move(item));
-  ready_.notify_one();
+  if (ReadyToHandOver()) ready_.notify_one();
   return true;
+}
+
+// The simulator waits for room only when one of these holds, so that neither waits for the other.
+bool MeasurementStream::ReadyToHandOver() const {
+  return finished_ || pictures_under_way_ > 0 || slots_.size() >= kBatch;
 }
 
 bool MeasurementStream::WaitForRoom(std::unique_lock<std::mutex>& lock) {
@@ -164,19 +172,21 @@ MeasurementStream::TimedPicture MeasurementStream::Take(const PictureRequest& re
 }
 
 std::optional<StreamItem> MeasurementStream::Next() {
-  std::unique_lock lock(mutex_);
-  ready_.wait(lock, [&] { return finished_ || !slots_.empty(); });
-  if (slots_.empty()) {
-    if (failure_) std::rethrow_exception(failure_);
-    return std::nullopt;
+  if (batch_.empty()) {
+    std::unique_lock lock(mutex_);
+    ready_.wait(lock, [&] { return finished_ || (ReadyToHandOver() && !slots_.empty()); });
+    if (slots_.empty()) {
+      if (failure_) std::rethrow_exception(failure_);
+      return std::nullopt;
+    }
+    std::swap(batch_, slots_);
+    room_.notify_one();
   }
-  Slot slot = std::move(slots_.front());
-  slots_.pop_front();
-  room_.notify_one();
+  Slot slot = std::move(batch_.front());
+  batch_.pop_front();
   if (auto* item = std::get_if<StreamItem>(&slot)) return std::move(*item);
-  lock.unlock();
   TimedPicture taken = std::get<std::future<TimedPicture>>(slot).get();
-  lock.lock();
+  const std::lock_guard lock(mutex_);
   --pictures_under_way_;
   picture_ms_[taken.stage].push_back(taken.ms);
   room_.notify_one();

@@ -75,6 +75,7 @@ class MeasurementStream {
   [[nodiscard]] bool PushFrame(const FrameRequest& request);
   [[nodiscard]] bool Ask(const PictureRequest& request);
   [[nodiscard]] bool Put(StreamItem item);
+  [[nodiscard]] bool ReadyToHandOver() const;
   [[nodiscard]] bool WaitForRoom(std::unique_lock<std::mutex>& lock);
 
   SimulatorOptions options_;
@@ -86,8 +87,9 @@ class MeasurementStream {
   std::mutex mutex_;
   std::condition_variable room_;   // for the simulator: a picture was handed over
   std::condition_variable job_;    // for the cameras: a picture is wanted
-  std::condition_variable ready_;  // for Next(): something was pushed
+  std::condition_variable ready_;  // for Next(): enough was pushed
   std::deque<Slot> slots_;
+  std::deque<Slot> batch_;  // taken from slots_; Next()'s own
   std::deque<PictureJob> jobs_;
   std::size_t pictures_under_way_ = 0;
   bool finished_ = false;   // the simulator has emitted everything
