@@ -98,8 +98,12 @@ TEST(Ukf, LateReadingsArePutWhereTheyBelong) {
   Stand(on_time, 0, 4 * kNsPerSecond, 0.6);
   Stand(late, 0, 4 * kNsPerSecond, 0.6, 60 * kMs);
   for (TimeNs t = 4 * kNsPerSecond - 50 * kMs; t <= 4 * kNsPerSecond; t += 10 * kMs) {
-    if (t % (20 * kMs) == 0) EXPECT_EQ(late.Process(Flow(t)).outcome, Outcome::kUsed);
-    if (t % (50 * kMs) == 0) EXPECT_EQ(late.Process(Light(t, 0.6)).outcome, Outcome::kUsed);
+    if (t % (20 * kMs) == 0) {
+      EXPECT_EQ(late.Process(Flow(t)).outcome, Outcome::kUsed);
+    }
+    if (t % (50 * kMs) == 0) {
+      EXPECT_EQ(late.Process(Light(t, 0.6)).outcome, Outcome::kUsed);
+    }
   }
   const Estimate a = *on_time.Now();
   const Estimate b = *late.Now();
