@@ -19,6 +19,11 @@ double HeadingVariance(const Eigen::Vector2d& by_tilt, const Eigen::Matrix3d& co
   return by_attitude.dot(covariance * by_attitude);
 }
 
+// ... and by the instrument's errors.
+double HeadingVariance(const SkyErrors& by_errors, const SkyErrors& sigmas) {
+  return by_errors.cwiseProduct(sigmas).squaredNorm();
+}
+
 // Of the heading that is read. Turned about its view, the instrument sees the axis turned, and the
 // heading with it.
 SkyErrors ByErrors(double axis_rad) {
@@ -71,7 +76,7 @@ bool HeadingFusion::Take(const Reading& reading, const Eigen::Quaterniond& q_WB,
   const double innovation = WrapPi(*heading - CompassHeading(q_WB));
   const SkyErrors by_errors = ByErrors(reading.light.axis_rad);
   const double variance = white * white + slow * slow + HeadingVariance(by_tilt, covariance) +
-                          by_errors.cwiseProduct(ErrorSigmas()).squaredNorm();
+                          HeadingVariance(by_errors, ErrorSigmas());
   const bool gated = std::abs(innovation) > options_.gate_sigmas * std::sqrt(variance);
   residuals_.push_back({reading.stamp, innovation, std::sqrt(variance), gated});
   if (gated) return false;
@@ -113,7 +118,7 @@ std::optional<HeadingEdge> HeadingFusion::TakeEdge(TimeNs stamp, const Eigen::Qu
   const Eigen::Vector2d by_tilt = sums.by_tilt / sums.weight;
   const SkyErrors by_errors = sums.by_errors / sums.weight;
   const double expected2 = white2 + slow2 + HeadingVariance(by_tilt, covariance) +
-                           by_errors.cwiseProduct(ErrorSigmas()).squaredNorm();
+                           HeadingVariance(by_errors, ErrorSigmas());
   if (std::abs(mean) > options_.edge_gate_sigmas * std::sqrt(expected2)) return std::nullopt;
   // The slow part counts once at the start; after that, as often as it has changed.
   const double slow_share =

@@ -30,27 +30,18 @@ float Contrast(const Matrix8f& products) {
 
 std::optional<PatchTemplate> CutTemplate(const cv::Mat& image, const cv::Point2f& middle,
                                          int half) {
-  Patch wide_patch;
-  if (!ReadPatch(image, middle, half + 1, wide_patch)) return std::nullopt;
+  Patch wide;
+  if (!ReadPatch(image, middle, half + 1, wide)) return std::nullopt;
   const int side = 2 * half + 1;
-  const int wide = side + 2;
   PatchTemplate patch{.half = half};
   patch.rows.resize(8, side * side);
-  int k = 0;
-  for (int j = -half; j <= half; ++j) {
-    const float* here = wide_patch.data() + (j + half + 1) * wide + 1;
-    for (int i = -half; i <= half; ++i, ++k, ++here) {
-      const float x = 0.5F * (here[1] - here[-1]);
-      const float y = 0.5F * (here[wide] - here[-wide]);
-      const auto fi = static_cast<float>(i);
-      const auto fj = static_cast<float>(j);
-      patch.rows.col(k) << x, y, x * fi, x * fj, y * fi, y * fj, here[0], 1.0F;
-    }
-  }
+  ForEachSlope(wide, half, [&](int k, float i, float j, float grey, float x, float y) {
+    patch.rows.col(k) << x, y, x * i, x * j, y * i, y * j, grey, 1.0F;
+  });
   patch.rows.row(6).array() -= patch.rows.row(6).mean();
   Matrix8f products = patch.rows * patch.rows.transpose();
   // Less than a grey value a pixel is noise.
-  if (Contrast(products) < static_cast<float>(k)) return std::nullopt;
+  if (Contrast(products) < static_cast<float>(patch.rows.cols())) return std::nullopt;
   patch.by_gain = products.col(6);
   patch.by_offset = products.col(7);
   products.diagonal().segment<4>(2).array() += kRidge;

@@ -128,18 +128,11 @@ std::optional<float> RowMatcher::Refine(const RowQuery& query, float disparity_p
 // From the template, which is a pixel wider all around than what is compared.
 void RowMatcher::FillRows(const cv::Point2f& along) {
   const int side = 2 * half_ + 1;
-  const int wide = side + 2;
   rows_.resize(5, side * side);
-  int k = 0;
-  for (int j = -half_; j <= half_; ++j) {
-    const float* here = template_.data() + (j + half_ + 1) * wide + 1;
-    for (int i = -half_; i <= half_; ++i, ++k, ++here) {
-      const float slope =
-          0.5F * (along.x * (here[1] - here[-1]) + along.y * (here[wide] - here[-wide]));
-      rows_.col(k) << slope, slope * static_cast<float>(i), slope * static_cast<float>(j), here[0],
-          1.0F;
-    }
-  }
+  ForEachSlope(template_, half_, [&](int k, float i, float j, float grey, float x, float y) {
+    const float slope = along.x * x + along.y * y;
+    rows_.col(k) << slope, slope * i, slope * j, grey, 1.0F;
+  });
 }
 
 // Half-size patches from the right, along the way back in the left image: best where they came

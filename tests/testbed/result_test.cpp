@@ -37,6 +37,9 @@ TEST_F(ResultTest, CarriesWhatTheRunWas) {
 }
 
 TEST_F(ResultTest, HasEveryMetricThatIsOffered) {
+  // Some are of disturbed runs alone.
+  record_.disturbed = {{.begin_s = 10.0, .end_s = 12.0}};
+  result_ = BuildResult(scenario_, record_, 42, "image");
   for (const std::string& metric : AllMetrics()) {
     const std::string estimator = EstimatorOfMetric(metric);
     if (!estimator.empty() && !result_["estimators"].contains(estimator)) continue;

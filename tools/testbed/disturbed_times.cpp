@@ -1,6 +1,7 @@
 #include "tools/testbed/disturbed_times.h"
 
 #include <cmath>
+#include <optional>
 
 #include "sim/disturbances/schedule.h"
 #include "sim/world/track.h"
@@ -46,13 +47,13 @@ std::vector<Stretch> DisturbedTimes(const Scenario& scenario, std::uint64_t tria
            scenario.disturbances, scenario.duration_s, scenario.seed, trial)) {
     times.push_back({event.start_s, event.end_s});
   }
-  const sim::Track track(scenario.world.track);
+  std::optional<sim::Track> track;
   std::vector<double> s_m;
   for (const sim::DisturbanceOptions& entry : scenario.disturbances) {
     const auto& road = RoadOf(entry);
     if (!road) continue;
-    if (s_m.empty()) s_m = ArcLengths(track, truth);
-    AddPassages(*road, track.length_m(), truth, s_m, times);
+    if (!track) s_m = ArcLengths(track.emplace(scenario.world.track), truth);
+    AddPassages(*road, track->length_m(), truth, s_m, times);
   }
   return times;
 }

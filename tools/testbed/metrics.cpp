@@ -70,6 +70,12 @@ Json ToJson(const EstimatorScore& score) {
         {"heading", score.nees->heading},
         {"heading_within_3_sigma", score.nees->heading_within_3_sigma}};
   }
+  if (score.recovery) {
+    const Recovery& r = *score.recovery;
+    json["recovery"] = {{"heading_s", r.heading_s ? Json(*r.heading_s) : Json(nullptr)},
+                        {"tracking_s", r.tracking_s},
+                        {"disturbances", r.disturbances}};
+  }
   json["tracked_fraction"] = score.tracked_fraction;
   return json;
 }
@@ -77,6 +83,7 @@ Json ToJson(const EstimatorScore& score) {
 std::vector<std::string> EstimatorMetrics(bool heading_only) {
   EstimatorScore full;
   full.nees.emplace();
+  full.recovery = Recovery{.heading_s = 0.0};
   if (!heading_only) {
     full.ate_m.emplace();
     full.rpe_1m.emplace();
@@ -111,11 +118,6 @@ bool IsMetric(const std::string& path) {
   if (parts.size() == 5 && parts[0] == "estimators" && parts[2] == "nis") {
     return FindInfo(parts[1]) != nullptr &&
            (parts[4] == "mean" || parts[4] == "count" || parts[4] == "gated");
-  }
-  // Of runs that are disturbed.
-  if (parts.size() == 4 && parts[0] == "estimators" && parts[2] == "recovery") {
-    return FindInfo(parts[1]) != nullptr &&
-           (parts[3] == "heading_s" || parts[3] == "tracking_s" || parts[3] == "disturbances");
   }
   static const std::vector<std::string> all = [] {
     std::vector<std::string> metrics = AllMetrics();

@@ -12,16 +12,9 @@
 #include <vector>
 
 #include "nav/api/estimate.h"
-#include "tools/testbed/run_record.h"
 #include "tools/testbed/score.h"
 
 namespace polnav::testbed {
-
-struct Recovery {
-  std::optional<double> heading_s;  // the longest; absent without five seconds to compare with
-  double tracking_s = 0.0;          // the longest
-  int disturbances = 0;             // judged
-};
 
 // Nothing when no disturbance can be judged.
 [[nodiscard]] std::optional<Recovery> ScoreRecovery(const std::vector<Stretch>& disturbed,

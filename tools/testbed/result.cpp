@@ -6,7 +6,6 @@
 
 #include "tools/testbed/hash.h"
 #include "tools/testbed/metrics.h"
-#include "tools/testbed/recovery.h"
 #include "tools/testbed/score.h"
 #include "tools/testbed/statistics.h"
 
@@ -29,12 +28,6 @@ Json ToJson(const OutcomeCounts& counts) {
           {"failed_solves", counts.failed_solves}};
 }
 
-Json ToJson(const Recovery& recovery) {
-  return {{"heading_s", recovery.heading_s ? Json(*recovery.heading_s) : Json(nullptr)},
-          {"tracking_s", recovery.tracking_s},
-          {"disturbances", recovery.disturbances}};
-}
-
 // A compass that finds no heading in a picture answers nothing.
 double AnsweredFraction(const OutcomeCounts& counts) {
   const auto asked = static_cast<double>(counts.used + counts.gated + counts.unusable);
@@ -51,13 +44,9 @@ Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth,
   json["measurements"] = ToJson(run.counts);
   if (truth.empty()) return json;  // nothing to score against
   // No answer at all leaves every metric out: criteria about it fail.
-  if (const auto score = Score(truth, run.estimates, run.heading_only)) {
+  if (const auto score = Score(truth, run.estimates, run.heading_only, disturbed)) {
     json.update(testbed::ToJson(*score));
     if (run.heading_only) json["tracked_fraction"] = AnsweredFraction(run.counts);
-    const ErrorSeries errors = ComputeErrors(truth, run.estimates, run.heading_only);
-    if (const auto recovery = ScoreRecovery(disturbed, errors, run.estimates)) {
-      json["recovery"] = ToJson(*recovery);
-    }
   } else {
     json["tracked_fraction"] = 0.0;
   }

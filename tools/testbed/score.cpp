@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/testbed/recovery.h"
+
 namespace polnav::testbed {
 namespace {
 
@@ -126,8 +128,8 @@ HeadingScore ScoreHeading(const std::vector<double>& signed_errors) {
 }
 
 std::optional<EstimatorScore> Score(const Trajectory& truth,
-                                    const std::vector<nav::Estimate>& estimates,
-                                    bool heading_only) {
+                                    const std::vector<nav::Estimate>& estimates, bool heading_only,
+                                    const std::vector<Stretch>& disturbed) {
   const std::vector<Judged> judged = Judge(truth, estimates);
   if (judged.empty()) return std::nullopt;
   std::vector<PosePair> pairs;
@@ -141,6 +143,7 @@ std::optional<EstimatorScore> Score(const Trajectory& truth,
   score.heading_deg = ScoreHeading(series.heading_deg);
   if (!heading_only) ScorePositions(pairs, series, score);
   score.nees = ScoreNees(series);
+  score.recovery = ScoreRecovery(disturbed, series, estimates);
   score.tracked_fraction = tracked / static_cast<double>(judged.size());
   return score;
 }

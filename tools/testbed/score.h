@@ -12,6 +12,7 @@
 
 #include "nav/api/estimate.h"
 #include "tools/testbed/pose_errors.h"
+#include "tools/testbed/run_record.h"
 #include "tools/testbed/statistics.h"
 
 namespace polnav::testbed {
@@ -68,6 +69,13 @@ struct Nees {
   double heading_within_3_sigma = 0.0;
 };
 
+// After disturbances; see recovery.h.
+struct Recovery {
+  std::optional<double> heading_s;  // the longest; absent without five seconds to compare with
+  double tracking_s = 0.0;          // the longest
+  int disturbances = 0;             // judged
+};
+
 struct EstimatorScore {
   std::optional<Statistics> ate_m;  // absent when the truth does not determine an alignment
   std::optional<RpeScore> rpe_1m;
@@ -77,12 +85,14 @@ struct EstimatorScore {
   std::optional<PositionScore> position_m;
   std::optional<double> drift_percent;  // mean RPE over 100 m, of 100 m
   std::optional<Nees> nees;
+  std::optional<Recovery> recovery;  // absent when no disturbance can be judged
   double tracked_fraction = 0.0;
 };
 
 // Nothing when no estimate belongs to any truth.
 [[nodiscard]] std::optional<EstimatorScore> Score(const Trajectory& truth,
                                                   const std::vector<nav::Estimate>& estimates,
-                                                  bool heading_only = false);
+                                                  bool heading_only = false,
+                                                  const std::vector<Stretch>& disturbed = {});
 
 }  // namespace polnav::testbed

@@ -98,11 +98,9 @@ std::string StudyStopSection(const Json& aggregate) {
                           IntervalText(c["actual"]), c["n"].dump(), width("half_width"),
                           width("asked"), c["known"].get<bool>() ? "known" : "not yet"});
   }
-  std::string why = StopText(stop);
-  why = why.substr(0, why.find('\n'));
+  std::string why = StopReason(stop);
   why.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(why.front())));
-  if (why.ends_with(':')) why.back() = '.';
-  return "<section><h2>Why it stopped</h2><p>" + EscapeMarkup(why) + "</p>" +
+  return "<section><h2>Why it stopped</h2><p>" + EscapeMarkup(why) + ".</p>" +
          (table.rows.size() > 1 ? table.Html() : "") + "</section>";
 }
 

@@ -14,11 +14,6 @@ namespace {
 
 constexpr const char* kOkRate = "ok_rate";
 
-std::optional<double> NumberAt(const Json& json, const char* key) {
-  if (!json.contains(key) || !json[key].is_number()) return std::nullopt;
-  return json[key].get<double>();
-}
-
 // "stereo heading_deg.rmse mean <= 1.5, the whole 95 % interval"
 std::string ExpectedText(const StudyCriterionText& c) {
   std::string text = NameOf(c.asked);

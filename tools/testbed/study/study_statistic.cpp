@@ -17,11 +17,6 @@ std::string TextAt(const Json& json, const char* key) {
   return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
 }
 
-std::optional<double> NumberAt(const Json& json, const char* key) {
-  if (!json.contains(key) || !json[key].is_number()) return std::nullopt;
-  return json[key].get<double>();
-}
-
 StatisticOfTrials SuccessRate(const StudyStatistic& asked, std::span<const double> values) {
   if (values.empty()) return {};
   const auto count =
@@ -58,6 +53,11 @@ std::vector<TrialValues> ReadMetric(const StudyTable& table, const std::string& 
 }
 
 }  // namespace
+
+std::optional<double> NumberAt(const Json& json, const char* key) {
+  if (!json.contains(key) || !json[key].is_number()) return std::nullopt;
+  return json[key].get<double>();
+}
 
 StudyStatistic ParseStudyStatistic(const Json& json) {
   return {.scenario = TextAt(json, "scenario"),

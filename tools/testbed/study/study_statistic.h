@@ -27,6 +27,9 @@ struct StudyStatistic {
   std::optional<double> success_at_least, success_at_most;
 };
 
+// Nothing where there is no such key, or no number.
+[[nodiscard]] std::optional<double> NumberAt(const Json& json, const char* key);
+
 // From an entry of a list in a study's definition; what has no such key stays empty.
 [[nodiscard]] StudyStatistic ParseStudyStatistic(const Json& json);
 

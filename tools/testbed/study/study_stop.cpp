@@ -137,19 +137,22 @@ Json ToJson(const std::optional<StudyStop>& stop) {
           {"checks", checks}};
 }
 
-std::string StopText(const Json& stop) {
-  if (stop.is_null()) return "";
+std::string StopReason(const Json& stop) {
   const auto samples = stop["looked_at"].get<std::uint64_t>();
-  std::string text;
-  if (!stop["stopped_at"].is_null()) {
-    text = fmt::format("stopped after {} trials of each case, known well enough:\n", samples);
-  } else if (samples == 0) {
-    return fmt::format("not looked at yet: the first look is after {} trials of each case\n",
+  if (samples == 0) {
+    return fmt::format("not looked at yet: the first look is after {} trials of each case",
                        kFirstLook);
-  } else {
-    text = fmt::format("not known well enough at the last look, after {} trials of each case:\n",
+  }
+  if (stop["stopped_at"].is_null()) {
+    return fmt::format("not known well enough at the last look, after {} trials of each case",
                        samples);
   }
+  return fmt::format("stopped after {} trials of each case, known well enough", samples);
+}
+
+std::string StopText(const Json& stop) {
+  if (stop.is_null()) return "";
+  std::string text = StopReason(stop) + (stop["checks"].empty() ? "\n" : ":\n");
   for (const Json& check : stop["checks"]) text += CheckText(check);
   return text;
 }

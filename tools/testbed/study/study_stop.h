@@ -50,7 +50,10 @@ struct StudyStop {
 // For the aggregate; null for a study without.
 [[nodiscard]] Json ToJson(const std::optional<StudyStop>& stop);
 
-// "stopped after 157 samples of each case: ..."; lines for people. From the aggregate's `stop`.
+// "stopped after 157 trials of each case, known well enough". From the aggregate's `stop`, not
+// null.
+[[nodiscard]] std::string StopReason(const Json& stop);
+// The same with a line for each thing that is to be known; empty for null.
 [[nodiscard]] std::string StopText(const Json& stop);
 
 }  // namespace polnav::testbed
