@@ -288,7 +288,7 @@ struct Stopped {
   LookFunction statistic;
   double truth;
   double spread;
-  bool one_more_look = false;
+  int more_looks;
 };
 
 // The spread of a median is 1/2 over the density there.
@@ -300,7 +300,7 @@ Stopped StoppedMedian(const Metric& m) {
             std::sort(sorted.begin(), sorted.end());
             return PercentileWithInterval(sorted, 50.0);
           },
-          m.quantile(0.5), 1.96 * 0.5 / density, true};
+          m.quantile(0.5), 1.96 * 0.5 / density, 2};
 }
 
 // The share below a percentile.
@@ -314,20 +314,19 @@ Stopped StoppedRate(const Metric& m, double percent) {
             return {static_cast<double>(count) / static_cast<double>(values.size()),
                     ExactRateInterval(count, values.size())};
           },
-          p, 1.96 * std::sqrt(p * (1.0 - p))};
+          p, 1.96 * std::sqrt(p * (1.0 - p)), 0};
 }
 
 std::vector<Stopped> StoppedBy(const Metric& m) {
   const LookFunction mean = [](auto values) { return MeanWithInterval(values, 1); };
-  return {{"mean", mean, m.mean, 1.96 * m.sigma},
+  return {{"mean", mean, m.mean, 1.96 * m.sigma, 1},
           StoppedMedian(m),
           StoppedRate(m, 50.0),
           StoppedRate(m, 90.0)};
 }
 
 // Stopped where the interval is as narrow as 100 to 400 trials would make it. Exact intervals of
-// rates cover more than 95 %; medians of skewed metrics 93 to 94 %, below nominal: no rule was
-// found that costs less than half as many trials again.
+// rates cover more than 95 %.
 TEST(Coverage, AfterSequentialStopping) {
   for (const Metric& m : Metrics()) {
     for (const Stopped& by : StoppedBy(m)) {
@@ -338,14 +337,14 @@ TEST(Coverage, AfterSequentialStopping) {
             fmt::format("{} of {}, stopped at a half-width of {:.3f}", by.name, m.name, half_width);
         const double share = Coverage(what, [&](int s) {
           const std::vector<double> v = Study(m, 6 * aim + 400, s, "stopped");
-          const auto stop = StopsAt(
-              v, {.half_width = half_width, .one_more_look = by.one_more_look}, by.statistic);
+          const auto stop =
+              StopsAt(v, {.half_width = half_width, .more_looks = by.more_looks}, by.statistic);
           if (!stop) return false;
           trials += static_cast<double>(*stop) / StudiesOf();
           return by.statistic(std::span(v).first(*stop)).interval.Holds(by.truth);
         });
         const bool rate = by.name.starts_with("success");
-        ExpectNominal(share, what, rate ? 1.0 : kHighest, by.one_more_look ? 0.92 : kLowest);
+        ExpectNominal(share, what, rate ? 1.0 : kHighest);
         fmt::print("|   trials it took, on average | {:.0f} |\n", trials);
       }
     }

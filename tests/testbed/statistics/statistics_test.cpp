@@ -118,9 +118,10 @@ TEST(Stopping, LooksSeldomAndIgnoresWhatRanAhead) {
   EXPECT_EQ(StopsAt(std::span(values).first(*stop), {.half_width = 0.05}, mean), stop);
   EXPECT_LE(MeanWithInterval(std::span(values).first(*stop), 1).interval.HalfWidth(), 0.05);
   EXPECT_FALSE(StopsAt(values, {.half_width = 1e-6}, mean).has_value());
-  EXPECT_EQ(StopsAt(values, {.half_width = 0.05, .one_more_look = true}, mean), NextLook(*stop));
-  EXPECT_EQ(LookBefore(NextLook(*stop)), stop);
-  EXPECT_FALSE(LookBefore(kFirstLook).has_value());
+  const std::size_t third = NextLook(NextLook(*stop));
+  EXPECT_EQ(StopsAt(values, {.half_width = 0.05, .more_looks = 2}, mean), third);
+  EXPECT_EQ(LookBefore(third, 2), stop);
+  EXPECT_FALSE(LookBefore(kFirstLook, 1).has_value());
   // Of a mean of 0.5: a tenth of it is the same rule.
   EXPECT_EQ(StopsAt(values, {.half_width = 0.1, .relative = true}, mean), stop);
 }

@@ -1,6 +1,7 @@
 #include "tools/testbed/statistics/stopping.h"
 
 #include <cmath>
+#include <vector>
 
 namespace polnav::testbed {
 namespace {
@@ -15,10 +16,12 @@ std::size_t NextLook(std::size_t n) {
   return look;
 }
 
-std::optional<std::size_t> LookBefore(std::size_t n) {
-  std::optional<std::size_t> before;
-  for (std::size_t look = NextLook(0); look < n; look = NextLook(look)) before = look;
-  return before;
+std::optional<std::size_t> LookBefore(std::size_t n, int looks) {
+  std::vector<std::size_t> all;
+  for (std::size_t look = NextLook(0); look <= n; look = NextLook(look)) all.push_back(look);
+  const auto back = static_cast<std::size_t>(looks);
+  if (all.size() <= back) return std::nullopt;
+  return all[all.size() - 1 - back];
 }
 
 double JudgedHalfWidth(const Estimated& statistic, std::size_t n, bool relative) {
@@ -34,9 +37,9 @@ std::optional<std::size_t> StopsAt(std::span<const double> values, const Stoppin
   for (std::size_t look = NextLook(0); look <= values.size(); look = NextLook(look)) {
     const Estimated estimated = statistic(values.first(look));
     if (JudgedHalfWidth(estimated, look, rule.relative) > rule.half_width) continue;
-    if (!rule.one_more_look) return look;
-    const std::size_t next = NextLook(look);
-    return next <= values.size() ? std::optional(next) : std::nullopt;
+    std::size_t end = look;
+    for (int i = 0; i < rule.more_looks; ++i) end = NextLook(end);
+    return end <= values.size() ? std::optional(end) : std::nullopt;
   }
   return std::nullopt;
 }

@@ -5,10 +5,9 @@
 // narrower than asked by the factor 1 + 4 / n. A rule that stops wherever the interval happens to
 // be narrow stops when the scatter is underestimated [Chow1965], and covers as little as 85 % with
 // skewed metrics; few looks, none of them early, and the factor bring it back
-// (docs/study_statistics.md has figures). The width of a percentile's interval scatters more, and
-// with it where the study ends: for a median it ends one look after the first that is narrow; the
-// outer percentiles cover 93 % even then. Wants independent trials: random sampling, not Latin
-// hypercube or Sobol.
+// (docs/study_statistics.md has figures). The narrower an interval's width scatters the less that
+// costs: rates end at once, means one look later, medians two; the outer percentiles cover 93 %
+// even then. Wants independent trials: random sampling, not Latin hypercube or Sobol.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +23,14 @@ inline constexpr std::size_t kFirstLook = 100;
 
 struct StoppingRule {
   double half_width = 0.0;
-  bool relative = false;       // half_width is a share of the statistic's magnitude
-  bool one_more_look = false;  // end at the look after the first that is narrow
+  bool relative = false;  // half_width is a share of the statistic's magnitude
+  int more_looks = 0;     // after the first that is narrow, before the end
 };
 
 // The look after n trials; kFirstLook from 0.
 [[nodiscard]] std::size_t NextLook(std::size_t n);
-// The look before n; nothing before the first.
-[[nodiscard]] std::optional<std::size_t> LookBefore(std::size_t n);
+// So many looks before the look n; nothing before the first.
+[[nodiscard]] std::optional<std::size_t> LookBefore(std::size_t n, int looks);
 
 // Half-width by which a statistic of n values is judged: of its interval, times 1 + 4 / n, and
 // with `relative` as a share of its magnitude.

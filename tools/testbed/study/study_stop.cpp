@@ -18,6 +18,12 @@ struct Asked {
   std::vector<TrialValues> values;  // of each case
 };
 
+// See stopping.h.
+int MoreLooks(const std::string& statistic) {
+  if (statistic == "success_rate") return 0;
+  return statistic == "median" ? 2 : 1;
+}
+
 std::vector<Asked> AskedOf(const StudyTable& table) {
   std::vector<Asked> all;
   if (!table.study().contains("stop")) return all;
@@ -27,7 +33,7 @@ std::vector<Asked> AskedOf(const StudyTable& table) {
     asked.rule.relative = !json.contains("half_width") || json["half_width"].is_null();
     asked.rule.half_width =
         json.at(asked.rule.relative ? "relative_half_width" : "half_width").get<double>();
-    asked.rule.one_more_look = asked.statistic.statistic == "median";
+    asked.rule.more_looks = MoreLooks(asked.statistic.statistic);
     all.push_back(std::move(asked));
   }
   return all;
@@ -56,8 +62,8 @@ StopCheck Check(const StudyTable& table, const Asked& asked, const TrialValues& 
                   .asked = asked.rule.half_width,
                   .relative = asked.rule.relative,
                   .known = IsNarrow(asked, of)};
-  if (asked.rule.one_more_look) {
-    const auto before = LookBefore(samples);
+  if (asked.rule.more_looks > 0) {
+    const auto before = LookBefore(samples, asked.rule.more_looks);
     check.known = before && IsNarrow(asked, Compute(asked.statistic,
                                                     FirstOf(values, *before, cases), table.seed()));
   }
