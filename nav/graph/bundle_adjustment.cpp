@@ -65,13 +65,14 @@ class Values {
 
 BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
                                      const BundleAdjustmentOptions& options, Window& window) {
-  NormalEquations equations = LinearizeWindow(camera, options, window);
-  BundleAdjustmentSummary summary{.initial_cost = equations.cost(), .final_cost = equations.cost()};
+  BundleAdjustmentSummary summary{.equations = LinearizeWindow(camera, options, window)};
+  NormalEquations& equations = summary.equations;
+  summary.initial_cost = summary.final_cost = equations.cost();
   double damping = 0.0;
   while (summary.iterations < options.max_iterations && damping <= kMostDamping) {
     ++summary.iterations;
     const NormalEquations::Reduced reduced = equations.Reduce(damping);
-    const Eigen::LDLT<Eigen::MatrixXd> solver(reduced.H);
+    const Eigen::LLT<Eigen::MatrixXd> solver(reduced.H);
     const Eigen::VectorXd step = -solver.solve(reduced.g);
     if (solver.info() != Eigen::Success || !step.allFinite()) {
       damping = std::max(kFirstDamping, damping * kDampingFactor);
@@ -99,12 +100,13 @@ BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
 
 std::vector<std::uint64_t> RemoveOutliers(const RectifiedCamera& camera, const PixelSigmas& sigmas,
                                           double max_sigmas, Window& window) {
+  const std::vector<Viewpoint> viewpoints = ViewpointsOf(camera, window);
   std::vector<std::uint64_t> removed;
   for (auto it = window.landmarks.begin(); it != window.landmarks.end();) {
     Landmark& landmark = it->second;
-    const Pose& host = window.keyframes[IndexOf(window, landmark.host)].T_WB;
+    const Viewpoint& host = viewpoints[IndexOf(window, landmark.host)];
     const auto outlying = [&](const Sighting& s) {
-      const Pose& target = window.keyframes[IndexOf(window, s.keyframe)].T_WB;
+      const Viewpoint& target = viewpoints[IndexOf(window, s.keyframe)];
       const auto r = Reproject(camera, host, target, landmark.coordinates, s.pixel, sigmas);
       return !r || r->residual.cwiseAbs().maxCoeff() > max_sigmas;
     };

@@ -4,22 +4,18 @@
 // reprojections and IMU sums, headings, and the marginalization prior.
 #pragma once
 
+#include "nav/graph/normal_equations.h"
 #include "nav/graph/window.h"
 #include "nav/stereo/rectifier.h"
 
 namespace polnav::nav {
-
-struct BundleAdjustmentOptions {
-  PixelSigmas sigmas;
-  double huber_sigmas = 1.5;
-  int max_iterations = 6;
-};
 
 struct BundleAdjustmentSummary {
   bool usable = false;
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;
+  NormalEquations equations;  // where the window is now
 };
 
 [[nodiscard]] BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,

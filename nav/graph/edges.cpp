@@ -13,6 +13,13 @@ std::size_t IndexOf(const Window& window, std::uint64_t keyframe) {
   throw std::logic_error("Window: a landmark refers to a keyframe that has slid out");
 }
 
+std::vector<Viewpoint> ViewpointsOf(const RectifiedCamera& camera, const Window& window) {
+  std::vector<Viewpoint> viewpoints;
+  viewpoints.reserve(window.keyframes.size());
+  for (const Keyframe& k : window.keyframes) viewpoints.push_back(ViewpointOf(camera, k.T_WB));
+  return viewpoints;
+}
+
 HeadingResidual EvaluateHeading(const HeadingEdge& edge, const Pose& T_WB,
                                 const SkyErrors& errors) {
   const Eigen::Vector3d x_W = T_WB.q * Eigen::Vector3d::UnitX();

@@ -50,7 +50,7 @@ Prior Eliminate(const NormalEquations::Reduced& n, const Indices& gone, const In
 
 void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
                        Window& window) {
-  NormalEquations n(window);
+  NormalEquations n(camera, window);
   n.AddPrior(window);
   const std::size_t keyframes = window.keyframes.size();
   n.AddKeyframe(window, 0);
@@ -58,7 +58,7 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
   const std::uint64_t oldest = window.keyframes.front().id;
   for (auto it = window.landmarks.begin(); it != window.landmarks.end();) {
     const bool leaves = it->second.host == oldest;
-    if (leaves) n.AddLandmark(camera, options, window, it->second);
+    if (leaves) n.AddLandmark(options, window, it->second);
     it = leaves ? window.landmarks.erase(it) : std::next(it);
   }
   const WindowLayout& layout = n.layout();
@@ -79,31 +79,32 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
   window.prior = prior;
 }
 
-StateCovariance NewestCovariance(const RectifiedCamera& camera,
-                                 const BundleAdjustmentOptions& options, const Window& window) {
-  const NormalEquations n = LinearizeWindow(camera, options, window);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(n.Reduce().H);
+// With the asked ones last, the last block of the Cholesky factor is that of their own information.
+StateCovariance NewestCovariance(const NormalEquations& window) {
+  const WindowLayout& layout = window.layout();
+  const std::size_t newest = layout.keyframes - 1;
+  Indices order;
+  Indices place;  // in the answer
+  Append(0, layout.Pose(newest), order);
+  if (layout.inertial) Append(layout.Motion(0), layout.Motion(newest) - layout.Motion(0), order);
+  const auto ask = [&](Eigen::Index from, Eigen::Index count, Eigen::Index to) {
+    Append(from, count, order);
+    Append(to, count, place);
+  };
+  ask(layout.Pose(newest), 6, 0);
+  if (layout.inertial) ask(layout.Motion(newest), 9, 6);
+  ask(layout.Errors(), kSkyErrors, 15);
+  const Eigen::LLT<Eigen::MatrixXd> solver(window.Reduce().H(order, order));
   if (solver.info() != Eigen::Success) {
     throw std::logic_error("NewestCovariance: the window's information is singular");
   }
-  const WindowLayout& layout = n.layout();
-  Indices newest;
-  Indices place;  // in the answer
-  const auto append = [&](Eigen::Index from, Eigen::Index count, Eigen::Index to) {
-    Append(from, count, newest);
-    Append(to, count, place);
-  };
-  append(layout.Pose(layout.keyframes - 1), 6, 0);
-  if (layout.inertial) append(layout.Motion(layout.keyframes - 1), 9, 6);
-  append(layout.Errors(), kSkyErrors, 15);
-  Eigen::MatrixXd selector = Eigen::MatrixXd::Zero(layout.size(), std::ssize(newest));
-  for (Eigen::Index i = 0; i < std::ssize(newest); ++i) {
-    selector(newest[static_cast<std::size_t>(i)], i) = 1.0;
-  }
-  const Eigen::MatrixXd columns = solver.solve(selector);
-  const Eigen::MatrixXd block = columns(newest, Eigen::all);
+  const Eigen::Index count = std::ssize(place);
+  const Eigen::MatrixXd root = solver.matrixLLT()
+                                   .bottomRightCorner(count, count)
+                                   .triangularView<Eigen::Lower>()
+                                   .solve(Eigen::MatrixXd::Identity(count, count));
   StateCovariance covariance = StateCovariance::Zero();
-  covariance(place, place) = 0.5 * (block + block.transpose());
+  covariance(place, place) = root.transpose() * root;
   return covariance;
 }
 

@@ -20,8 +20,6 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
                        Window& window);
 
 // Of the newest keyframe's pose and motion in W, and of the sky's errors.
-[[nodiscard]] StateCovariance NewestCovariance(const RectifiedCamera& camera,
-                                               const BundleAdjustmentOptions& options,
-                                               const Window& window);
+[[nodiscard]] StateCovariance NewestCovariance(const NormalEquations& window);
 
 }  // namespace polnav::nav

@@ -47,8 +47,10 @@ Vector15d InertialScales(const InertialEdge& edge, const Vector15d& residual, do
 
 }  // namespace
 
-NormalEquations::NormalEquations(const Window& window)
-    : layout_{window.keyframes.size(), window.inertial},
+NormalEquations::NormalEquations(const RectifiedCamera& camera, const Window& window)
+    : camera_(camera),
+      viewpoints_(ViewpointsOf(camera, window)),
+      layout_{window.keyframes.size(), window.inertial},
       H_(Eigen::MatrixXd::Zero(layout_.size(), layout_.size())),
       g_(Eigen::VectorXd::Zero(layout_.size())) {}
 
@@ -127,8 +129,7 @@ void NormalEquations::AddInertial(const Window& window, std::size_t i) {
   g_.segment<18>(motions) += Jtr.tail<18>();
 }
 
-void NormalEquations::AddLandmark(const RectifiedCamera& camera,
-                                  const BundleAdjustmentOptions& options, const Window& window,
+void NormalEquations::AddLandmark(const BundleAdjustmentOptions& options, const Window& window,
                                   const Landmark& landmark) {
   const std::size_t host = IndexOf(window, landmark.host);
   const auto h = layout_.Pose(host);
@@ -139,8 +140,8 @@ void NormalEquations::AddLandmark(const RectifiedCamera& camera,
   couplings_.push_back({h, Matrix3x6d::Zero()});
   for (const Sighting& s : landmark.sightings) {
     const std::size_t target = IndexOf(window, s.keyframe);
-    auto e = Reproject(camera, window.keyframes[host].T_WB, window.keyframes[target].T_WB,
-                       landmark.coordinates, s.pixel, options.sigmas);
+    auto e = Reproject(camera_, viewpoints_[host], viewpoints_[target], landmark.coordinates,
+                       s.pixel, options.sigmas);
     if (!e) continue;
     const double scale = RobustScale(e->residual.norm(), options.huber_sigmas, cost_);
     e->residual *= scale;
@@ -204,14 +205,14 @@ std::vector<Eigen::Vector3d> NormalEquations::LandmarkSteps(const Eigen::VectorX
 
 NormalEquations LinearizeWindow(const RectifiedCamera& camera,
                                 const BundleAdjustmentOptions& options, const Window& window) {
-  NormalEquations equations(window);
+  NormalEquations equations(camera, window);
   equations.AddPrior(window);
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
     equations.AddKeyframe(window, i);
     equations.AddInertial(window, i);
   }
   for (const auto& [id, landmark] : window.landmarks) {
-    equations.AddLandmark(camera, options, window, landmark);
+    equations.AddLandmark(options, window, landmark);
   }
   return equations;
 }

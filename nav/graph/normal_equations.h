@@ -9,10 +9,15 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "nav/graph/bundle_adjustment.h"
 #include "nav/graph/window.h"
 
 namespace polnav::nav {
+
+struct BundleAdjustmentOptions {
+  PixelSigmas sigmas;
+  double huber_sigmas = 1.5;
+  int max_iterations = 6;
+};
 
 struct WindowLayout {
   std::size_t keyframes = 0;
@@ -30,13 +35,13 @@ struct WindowLayout {
 
 class NormalEquations {
  public:
-  explicit NormalEquations(const Window& window);
+  NormalEquations(const RectifiedCamera& camera, const Window& window);
 
   void AddPrior(const Window& window);
   void AddKeyframe(const Window& window, std::size_t keyframe);  // the edges of it alone
   void AddInertial(const Window& window, std::size_t keyframe);  // from the one before, if any
-  void AddLandmark(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
-                   const Window& window, const Landmark& landmark);
+  void AddLandmark(const BundleAdjustmentOptions& options, const Window& window,
+                   const Landmark& landmark);
 
   // Of all but the landmarks, with these eliminated. damping: Levenberg-Marquardt's, relative.
   struct Reduced {
@@ -67,6 +72,8 @@ class NormalEquations {
     [[nodiscard]] Eigen::Matrix3d Inverse(double damping) const;
   };
 
+  RectifiedCamera camera_;
+  std::vector<Viewpoint> viewpoints_;  // of the keyframes
   WindowLayout layout_;
   Eigen::MatrixXd H_;  // lower triangle of blocks
   Eigen::VectorXd g_;

@@ -33,15 +33,17 @@ std::vector<LandmarkView> PlaceMemory::Match(const RectifiedCamera& camera, cons
                                              const StereoFeatures& features) const {
   std::vector<std::vector<cv::DMatch>> matches;
   cv::BFMatcher(cv::NORM_HAMMING).knnMatch(features.descriptors, place.descriptors, matches, 2);
+  const Viewpoint host = ViewpointOf(camera, T_WBh);
+  const Viewpoint here = ViewpointOf(camera, T_WB);
   std::vector<LandmarkView> views;
   for (const std::vector<cv::DMatch>& m : matches) {
     if (m.size() < 2 || m[0].distance > kDistinctness * m[1].distance) continue;
     const FeatureObservation& f = features.features[static_cast<std::size_t>(m[0].queryIdx)];
     const LandmarkView view{.id = f.id,
-                            .T_WBh = &T_WBh,
+                            .host = host,
                             .landmark = place.landmarks[static_cast<std::size_t>(m[0].trainIdx)],
                             .pixel = PixelOf(f)};
-    const auto e = Reproject(camera, T_WBh, T_WB, view.landmark, view.pixel, {1.0, 1.0});
+    const auto e = Reproject(camera, host, here, view.landmark, view.pixel, {1.0, 1.0});
     if (e && e->residual.head<2>().norm() < options_.match_radius_px) views.push_back(view);
   }
   return views;

@@ -105,4 +105,8 @@ struct Window {
 // Position of a keyframe in the window. Throws std::logic_error when it has slid out.
 [[nodiscard]] std::size_t IndexOf(const Window& window, std::uint64_t keyframe);
 
+// Of each keyframe.
+[[nodiscard]] std::vector<Viewpoint> ViewpointsOf(const RectifiedCamera& camera,
+                                                  const Window& window);
+
 }  // namespace polnav::nav

@@ -87,7 +87,7 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Expectation expected = Expect(features.stamp);
   const std::vector<LandmarkView> views =
-      RejectMoving(MatchLandmarks(window_, features), expected, report);
+      RejectMoving(MatchLandmarks(camera_, window_, features), expected, report);
   const auto solution = SolvePose(camera_, views, expected.pose.T_WB, solver_, options_.min_inliers,
                                   step_ > 0 ? std::optional(expected.pose) : std::nullopt);
   if (solution) Follow(*solution, expected, views);
@@ -221,7 +221,8 @@ void StereoEstimator::AddKeyframe(const StereoFeatures& features,
 void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& report) {
   StageWatch watch(report.stage_s);
   report.keyframes = 1;
-  if (!AdjustBundle(camera_, adjustment_, window_).usable) ++report.failed_solves;
+  const BundleAdjustmentSummary adjusted = AdjustBundle(camera_, adjustment_, window_);
+  if (!adjusted.usable) ++report.failed_solves;
   for (const std::uint64_t id :
        RemoveOutliers(camera_, adjustment_.sigmas, options_.inlier_sigmas, window_)) {
     rejected_.Add(id);
@@ -232,7 +233,7 @@ void StereoEstimator::OptimizeWindow(const StereoFeatures& features, Report& rep
   const Keyframe& newest = window_.keyframes.back();
   T_WB_ = newest.T_WB;
   v_WI_ = newest.motion.v_WI;
-  state_covariance_ = NewestCovariance(camera_, adjustment_, window_);
+  state_covariance_ = NewestCovariance(adjusted.equations);
   covariance_ = state_covariance_.topLeftCorner<6, 6>();
   if (imu_) imu_->Begin(stamp_, newest.motion);
   if (static_cast<int>(window_.keyframes.size()) > options_.window_keyframes) {

@@ -8,8 +8,9 @@ std::vector<bool> MovesWithScene(const RectifiedCamera& camera,
                                  const std::vector<LandmarkView>& views, const PosePrior& expected,
                                  const PixelSigmas& pixels, double gate_sigmas) {
   std::vector<bool> moves_with_scene;
+  const Viewpoint target = ViewpointOf(camera, expected.T_WB);
   for (const LandmarkView& view : views) {
-    const auto e = Reproject(camera, *view.T_WBh, expected.T_WB, view.landmark, view.pixel, pixels);
+    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, pixels);
     if (!e) {  // behind the camera
       moves_with_scene.push_back(false);
       continue;

@@ -31,8 +31,9 @@ Normal Linearize(const RectifiedCamera& camera, const std::vector<LandmarkView>&
     n.H = prior->information;
     n.g = n.H * Difference(T_WB, prior->T_WB);
   }
+  const Viewpoint target = ViewpointOf(camera, T_WB);
   for (const LandmarkView& view : views) {
-    const auto e = Reproject(camera, *view.T_WBh, T_WB, view.landmark, view.pixel, options.sigmas);
+    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, options.sigmas);
     if (!e) continue;
     const double norm = e->residual.norm();
     const double weight = norm <= options.huber_sigmas ? 1.0 : options.huber_sigmas / norm;
@@ -64,9 +65,9 @@ std::optional<PoseSolution> SolvePose(const RectifiedCamera& camera,
   std::vector<LandmarkView> inliers;
   double chi2 = 0.0;
   int degrees_of_freedom = -6;
+  const Viewpoint target = ViewpointOf(camera, solution.T_WB);
   for (const LandmarkView& view : views) {
-    const auto e =
-        Reproject(camera, *view.T_WBh, solution.T_WB, view.landmark, view.pixel, options.sigmas);
+    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, options.sigmas);
     const bool in = e && e->residual.cwiseAbs().maxCoeff() <= options.inlier_sigmas;
     solution.inlier.push_back(in);
     if (!in) continue;

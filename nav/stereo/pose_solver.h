@@ -15,7 +15,7 @@ namespace polnav::nav {
 // A landmark of the window as the newest frame sees it.
 struct LandmarkView {
   std::uint64_t id = 0;
-  const Pose* T_WBh = nullptr;  // of the landmark's host; outlives the view
+  Viewpoint host;
   Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
   StereoPixel pixel;
 };

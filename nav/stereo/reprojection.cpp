@@ -9,31 +9,6 @@ namespace {
 constexpr double kMinDepthRatio = 1e-3;        // of the target's depth over the host's
 constexpr double kMinInverseDepth_1_m = 1e-5;  // 100 km: further is the same as infinity
 
-// The landmark in C of keyframe j, times its inverse depth in the host: finite up to infinity.
-//   y = R_CB (R_WBj^T w - rho p_BC),  w = R_WBh (R_BC m + rho p_BC) + rho (p_WBh - p_WBj)
-struct Transfer {
-  Eigen::Matrix3d R_CW;   // of the target
-  Eigen::Matrix3d R_WCh;  // of the host
-  Eigen::Vector3d arm_W;  // R_WBh (R_BC m + rho p_BC): the point seen from the host's body
-  Eigen::Vector3d w;
-  Eigen::Vector3d y;
-};
-
-Transfer TransferLandmark(const RectifiedCamera& camera, const Pose& T_WBh, const Pose& T_WBj,
-                          const Eigen::Vector3d& landmark) {
-  const double rho = landmark.z();
-  const Eigen::Vector3d m(landmark.x(), landmark.y(), 1.0);
-  const Eigen::Matrix3d R_BC = camera.T_BC.q.toRotationMatrix();
-  const Eigen::Matrix3d R_WBh = T_WBh.q.toRotationMatrix();
-  Transfer t;
-  t.R_CW = (T_WBj.q.toRotationMatrix() * R_BC).transpose();
-  t.R_WCh = R_WBh * R_BC;
-  t.arm_W = R_WBh * (R_BC * m + rho * camera.T_BC.p);
-  t.w = t.arm_W + rho * (T_WBh.p - T_WBj.p);
-  t.y = t.R_CW * t.w - rho * (R_BC.transpose() * camera.T_BC.p);
-  return t;
-}
-
 }  // namespace
 
 StereoPixel PixelOf(const FeatureObservation& feature) {
@@ -42,15 +17,28 @@ StereoPixel PixelOf(const FeatureObservation& feature) {
   return pixel;
 }
 
-std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Pose& T_WBh,
-                                      const Pose& T_WBj, const Eigen::Vector3d& landmark,
+Viewpoint ViewpointOf(const RectifiedCamera& camera, const Pose& T_WB) {
+  return {.R_WC = (T_WB.q * camera.T_BC.q).toRotationMatrix(),
+          .p_WB = T_WB.p,
+          .arm_W = T_WB.q * camera.T_BC.p};
+}
+
+// The landmark in C of the target j, times its inverse depth in the host h, is finite up to
+// infinity:
+//   y = R_CjW (w - rho arm_j),  w = seen_h + rho (p_WBh - p_WBj),  seen_h = R_WCh m + rho arm_h
+std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Viewpoint& host,
+                                      const Viewpoint& target, const Eigen::Vector3d& landmark,
                                       const StereoPixel& seen, const PixelSigmas& sigmas) {
-  const Transfer t = TransferLandmark(camera, T_WBh, T_WBj, landmark);
-  if (t.y.z() < kMinDepthRatio) return std::nullopt;
   const double rho = landmark.z();
-  const double inv_z = 1.0 / t.y.z();
-  const double x = t.y.x() * inv_z;
-  const double y = t.y.y() * inv_z;
+  const Eigen::Vector3d m(landmark.x(), landmark.y(), 1.0);
+  const Eigen::Vector3d seen_W = host.R_WC * m + rho * host.arm_W;
+  const Eigen::Vector3d between_W = host.p_WB - target.p_WB;
+  const Eigen::Vector3d w = seen_W + rho * between_W;
+  const Eigen::Vector3d point = target.R_WC.transpose() * (w - rho * target.arm_W);
+  if (point.z() < kMinDepthRatio) return std::nullopt;
+  const double inv_z = 1.0 / point.z();
+  const double x = point.x() * inv_z;
+  const double y = point.y() * inv_z;
   const double fb_z = camera.f_px * camera.baseline_m * inv_z;
   const Eigen::Vector3d weights(1.0 / sigmas.position_px, 1.0 / sigmas.position_px,
                                 seen.disparity_px ? 1.0 / sigmas.disparity_px : 0.0);
@@ -61,22 +49,25 @@ std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Pose&
       seen.disparity_px.value_or(0.0) - fb_z * rho;
   r.residual.array() *= weights.array();
 
-  Eigen::Matrix3d by_y;                                        // of the residual
-  by_y << -camera.f_px * inv_z, 0.0, camera.f_px * x * inv_z,  //
-      0.0, -camera.f_px * inv_z, camera.f_px * y * inv_z,      //
+  Eigen::Matrix3d by_point;                                        // of the residual
+  by_point << -camera.f_px * inv_z, 0.0, camera.f_px * x * inv_z,  //
+      0.0, -camera.f_px * inv_z, camera.f_px * y * inv_z,          //
       0.0, 0.0, fb_z * rho * inv_z;
-  by_y = weights.asDiagonal() * by_y;
-  const Eigen::Matrix3d by_w = by_y * t.R_CW;
+  by_point = weights.asDiagonal() * by_point;
+  const Eigen::Matrix3d by_w = by_point * target.R_WC.transpose();
 
+  // b Skew(a) = b x a, row by row.
   r.by_host.leftCols<3>() = rho * by_w;
-  r.by_host.rightCols<3>() = -by_w * Skew(t.arm_W);
   r.by_target.leftCols<3>() = -rho * by_w;
-  r.by_target.rightCols<3>() = by_w * Skew(t.w);
-  r.by_landmark.leftCols<2>() = by_w * t.R_WCh.leftCols<2>();
-  // arm_W is linear in rho through the lever arm; the lever arms of host and target differ only
-  // by the attitude between them.
-  const Eigen::Vector3d w_by_rho = T_WBh.q * camera.T_BC.p + T_WBh.p - T_WBj.p;
-  r.by_landmark.col(2) = by_y * (t.R_CW * w_by_rho - camera.T_BC.q.conjugate() * camera.T_BC.p);
+  for (int row = 0; row < 3; ++row) {
+    const Eigen::Vector3d b = by_w.row(row);
+    r.by_host.row(row).tail<3>() = seen_W.cross(b);
+    r.by_target.row(row).tail<3>() = b.cross(w);
+  }
+  r.by_landmark.leftCols<2>() = by_w * host.R_WC.leftCols<2>();
+  // Seen_W is linear in rho through the arm; those of host and target differ only by the attitude
+  // between them.
+  r.by_landmark.col(2) = by_w * (host.arm_W + between_W - target.arm_W);
   r.by_landmark(2, 2) -= weights.z() * fb_z;
   return r;
 }

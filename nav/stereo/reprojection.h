@@ -39,10 +39,18 @@ struct Reprojection {
   Eigen::Matrix3d by_landmark;
 };
 
+// What all points that a keyframe sees have in common.
+struct Viewpoint {
+  Eigen::Matrix3d R_WC;
+  Eigen::Vector3d p_WB;
+  Eigen::Vector3d arm_W;  // from the body to the camera
+};
+[[nodiscard]] Viewpoint ViewpointOf(const RectifiedCamera& camera, const Pose& T_WB);
+
 // Nothing when the point is not in front of the target camera. The host itself as target is
 // allowed: then by_host + by_target = 0.
 [[nodiscard]] std::optional<Reprojection> Reproject(const RectifiedCamera& camera,
-                                                    const Pose& T_WBh, const Pose& T_WBj,
+                                                    const Viewpoint& host, const Viewpoint& target,
                                                     const Eigen::Vector3d& landmark,
                                                     const StereoPixel& seen,
                                                     const PixelSigmas& sigmas);

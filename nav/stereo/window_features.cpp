@@ -12,14 +12,15 @@ void RejectedTracks::KeepOnly(const StereoFeatures& seen) {
   ids_ = std::move(kept);
 }
 
-std::vector<LandmarkView> MatchLandmarks(const Window& window, const StereoFeatures& features) {
+std::vector<LandmarkView> MatchLandmarks(const RectifiedCamera& camera, const Window& window,
+                                         const StereoFeatures& features) {
+  const std::vector<Viewpoint> viewpoints = ViewpointsOf(camera, window);
   std::vector<LandmarkView> views;
   for (const FeatureObservation& f : features.features) {
     const auto found = window.landmarks.find(f.id);
     if (found == window.landmarks.end()) continue;
-    const Keyframe& host = window.keyframes[IndexOf(window, found->second.host)];
     views.push_back({.id = f.id,
-                     .T_WBh = &host.T_WB,
+                     .host = viewpoints[IndexOf(window, found->second.host)],
                      .landmark = found->second.coordinates,
                      .pixel = PixelOf(f)});
   }

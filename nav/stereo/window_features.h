@@ -25,8 +25,8 @@ class RejectedTracks {
   std::set<std::uint64_t> ids_;
 };
 
-// Valid as long as the window's keyframes stay where they are.
-[[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const Window& window,
+[[nodiscard]] std::vector<LandmarkView> MatchLandmarks(const RectifiedCamera& camera,
+                                                       const Window& window,
                                                        const StereoFeatures& features);
 
 // What the window's newest keyframe sees: of old landmarks what is trusted, and new landmarks of

@@ -23,14 +23,15 @@ class PoseSolverTest : public ::testing::Test {
       const Eigen::Vector3d landmark(1.2 * uniform(engine) - 0.6, 0.6 * uniform(engine) - 0.3,
                                      (0.8 + 0.4 * uniform(engine)) / depth_m);
       StereoPixel seen{.disparity_px = 0.0};
-      const auto e = Reproject(camera_, host_, truth_, landmark, seen, {1.0, 1.0});
+      const auto e =
+          Reproject(camera_, host_, ViewpointOf(camera_, truth_), landmark, seen, {1.0, 1.0});
       seen.uv_px = -e->residual.head<2>();
       seen.disparity_px = -e->residual.z();
       seen.uv_px +=
           options_.sigmas.position_px * Eigen::Vector2d(gaussian(engine), gaussian(engine));
       *seen.disparity_px += options_.sigmas.disparity_px * gaussian(engine);
       views.push_back({.id = static_cast<std::uint64_t>(i),
-                       .T_WBh = &host_,
+                       .host = host_,
                        .landmark = landmark,
                        .pixel = seen});
     }
@@ -42,7 +43,7 @@ class PoseSolverTest : public ::testing::Test {
   }
 
   RectifiedCamera camera_ = StereoRectifier(TestCalibration()).camera();
-  Pose host_{ExpRotation({0.0, 0.0, 0.3}), {3.0, -2.0, 0.5}};
+  Viewpoint host_ = ViewpointOf(camera_, {ExpRotation({0.0, 0.0, 0.3}), {3.0, -2.0, 0.5}});
   Pose truth_{ExpRotation({0.0, 0.01, 0.32}), {3.5, -1.8, 0.5}};
   PoseSolverOptions options_{.sigmas = {.position_px = 0.7, .disparity_px = 0.6}};
   // Constant velocity at 10 Hz misses 0.1 m and 0.3 degrees.

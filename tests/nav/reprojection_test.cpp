@@ -16,8 +16,13 @@ class ReprojectionTest : public ::testing::Test {
   StereoPixel seen_{.uv_px = {400.0, 200.0}, .disparity_px = 3.0};
   PixelSigmas sigmas_{.position_px = 0.5, .disparity_px = 0.4};
 
+  std::optional<Reprojection> See(const Pose& host, const Pose& target,
+                                  const Eigen::Vector3d& l) const {
+    return Reproject(camera_, ViewpointOf(camera_, host), ViewpointOf(camera_, target), l, seen_,
+                     sigmas_);
+  }
   Eigen::Vector3d Residual(const Pose& host, const Pose& target, const Eigen::Vector3d& l) const {
-    return Reproject(camera_, host, target, l, seen_, sigmas_)->residual;
+    return See(host, target, l)->residual;
   }
 };
 
@@ -27,7 +32,7 @@ constexpr double kStep = 1e-6;
 constexpr double kDifferenceTolerance = 1e-4;
 
 TEST_F(ReprojectionTest, JacobiansAgreeWithFiniteDifferences) {
-  const auto e = Reproject(camera_, host_, target_, landmark_, seen_, sigmas_);
+  const auto e = See(host_, target_, landmark_);
   ASSERT_TRUE(e);
   for (int k = 0; k < 6; ++k) {
     const Eigen::Matrix<double, 6, 1> d = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
@@ -50,7 +55,7 @@ TEST_F(ReprojectionTest, JacobiansAgreeWithFiniteDifferences) {
 }
 
 TEST_F(ReprojectionTest, MovingHostAndTargetTogetherChangesNothing) {
-  const auto e = Reproject(camera_, host_, target_, landmark_, seen_, sigmas_);
+  const auto e = See(host_, target_, landmark_);
   // A common translation; a common turn about W's origin moves both positions too.
   const Eigen::Matrix3d shift = e->by_host.leftCols<3>() + e->by_target.leftCols<3>();
   EXPECT_LT(shift.norm(), 1e-9);
@@ -69,10 +74,10 @@ TEST_F(ReprojectionTest, DisparityIsBaselineTimesFocalLengthOverDepth) {
 
 TEST_F(ReprojectionTest, APointAtInfinityIsSeenAndOneBehindIsNot) {
   landmark_.z() = 0.0;
-  EXPECT_TRUE(Reproject(camera_, host_, target_, landmark_, seen_, sigmas_));
+  EXPECT_TRUE(See(host_, target_, landmark_));
   const Pose turned{
       target_.q * Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), target_.p};
-  EXPECT_FALSE(Reproject(camera_, host_, turned, landmark_, seen_, sigmas_));
+  EXPECT_FALSE(See(host_, turned, landmark_));
 }
 
 TEST(Rotation, LogUndoesExpUpToHalfATurn) {
