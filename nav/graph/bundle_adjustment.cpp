@@ -79,6 +79,11 @@ BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,
       continue;
     }
     summary.usable = true;
+    const double promised = reduced.landmarks_gain - 0.5 * reduced.g.dot(step);
+    if (promised <= kLeastGain * equations.cost()) {  // not worth a look at what it brings
+      Step(equations, step, damping, window);
+      break;
+    }
     const Values before(window);
     Step(equations, step, damping, window);
     NormalEquations next = LinearizeWindow(camera, options, window);

@@ -15,7 +15,7 @@ struct BundleAdjustmentSummary {
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;
-  NormalEquations equations;  // where the window is now
+  NormalEquations equations;  // next to where the window is now
 };
 
 [[nodiscard]] BundleAdjustmentSummary AdjustBundle(const RectifiedCamera& camera,

@@ -175,6 +175,7 @@ NormalEquations::Reduced NormalEquations::Reduce(double damping) const {
   reduced.H.diagonal() *= 1.0 + damping;
   for (const LandmarkBlock& landmark : landmarks_) {
     const Eigen::Matrix3d inverse = landmark.Inverse(damping);
+    reduced.landmarks_gain += 0.5 * landmark.g.dot(inverse * landmark.g);
     for (std::size_t i = landmark.begin; i < landmark.end; ++i) {
       const Coupling& row = couplings_[i];
       const Eigen::Matrix<double, 6, 3> gain = row.H.transpose() * inverse;

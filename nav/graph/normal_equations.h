@@ -47,6 +47,7 @@ class NormalEquations {
   struct Reduced {
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
+    double landmarks_gain = 0.0;  // of cost, when they alone move
   };
   [[nodiscard]] Reduced Reduce(double damping = 0.0) const;
 
