@@ -215,7 +215,9 @@ std::vector<Simulator::Emission> Simulator::Step() {
   const Truth& now = vehicle_->truth();
   std::vector<Emission> due;
   if (truth_clock_.Due(now.stamp)) {
-    due.emplace_back(now);
+    Truth truth = now;
+    if (imu_) truth.imu_bias = imu_->Bias(now.stamp);
+    due.emplace_back(truth);
     ++truth_clock_.index;
   }
   if (imu_ && imu_clock_.Due(now.stamp)) {

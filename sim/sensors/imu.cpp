@@ -144,4 +144,9 @@ nav::ImuSample Imu::Sample(const Truth& begin, const Truth& end, std::uint64_t i
   return sample;
 }
 
+ImuBias Imu::Bias(nav::TimeNs stamp) const {
+  const double warmer_k = WarmerAt(options_.temperature, nav::ToSeconds(stamp));
+  return {.gyro_rad_s = gyro_.Bias(warmer_k), .accel_m_s2 = accel_.Bias(warmer_k)};
+}
+
 }  // namespace polnav::sim

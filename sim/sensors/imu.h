@@ -38,6 +38,9 @@ class Imu {
   // others were taken.
   [[nodiscard]] nav::ImuSample Sample(const Truth& begin, const Truth& end, std::uint64_t index);
 
+  // Of the sample taken last (at first: from turn-on), as warm as at `stamp`.
+  [[nodiscard]] ImuBias Bias(nav::TimeNs stamp) const;
+
  private:
   // One unit.
   struct Instrument {

@@ -15,12 +15,15 @@ void InertialTriad::Step(RandomStream::Sample& walk, RandomStream::Sample& flick
   flicker_.Step(flicker);
 }
 
+Eigen::Vector3d InertialTriad::Bias(double warmer_k) const {
+  return errors_.bias + warmer_k * errors_.bias_1_k + walk_ + flicker_.value();
+}
+
 Eigen::Vector3d InertialTriad::Read(const Eigen::Vector3d& truth, double dt_s, double warmer_k,
                                     const Eigen::Vector3d& extra,
                                     RandomStream::Sample& noise) const {
-  const Eigen::Vector3d bias = errors_.bias + warmer_k * errors_.bias_1_k + walk_ +
-                               flicker_.value() + extra +
-                               warmer_k * errors_.scale_1_k.cwiseProduct(truth);
+  const Eigen::Vector3d bias =
+      Bias(warmer_k) + extra + warmer_k * errors_.scale_1_k.cwiseProduct(truth);
   Eigen::Vector3d reading = errors_.distortion * truth + bias +
                             errors_.noise_sqrt_hz / std::sqrt(dt_s) * GaussianVector(noise);
   for (double& axis : reading) {

@@ -34,6 +34,8 @@ class InertialTriad {
   // The bias moves on by one sample.
   void Step(RandomStream::Sample& walk, RandomStream::Sample& flicker);
 
+  [[nodiscard]] Eigen::Vector3d Bias(double warmer_k) const;
+
   // Mean of the truth over dt_s; extra: errors that other sensors' truth causes.
   [[nodiscard]] Eigen::Vector3d Read(const Eigen::Vector3d& truth, double dt_s, double warmer_k,
                                      const Eigen::Vector3d& extra,

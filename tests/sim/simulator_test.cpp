@@ -244,6 +244,20 @@ TEST(Simulator, ATurntableCarriesTheSameSensors) {
   EXPECT_THROW(Simulator(options, {1, 0}), std::logic_error) << "two vehicles at once";
 }
 
+// Whoever scores the biases that an estimator found has the true ones from the truth.
+TEST(Simulator, TheTruthKnowsTheImusBias) {
+  SimulatorOptions options;
+  options.vehicle.turntable = TurntableOptions{};
+  EXPECT_FALSE(std::get<Truth>(Simulator(options, {1, 0}).Step().at(0)).imu_bias.has_value());
+  options.sensors.imu = ImuPreset("perfect");
+  options.sensors.imu->gyro_bias_deg_s = {1.0, 2.0, 3.0};
+  const Truth truth = std::get<Truth>(Simulator(options, {1, 0}).Step().at(0));
+  ASSERT_TRUE(truth.imu_bias.has_value());
+  EXPECT_LT((truth.imu_bias->gyro_rad_s - nav::DegToRad(1.0) * Eigen::Vector3d(1, 2, 3)).norm(),
+            1e-15);
+  EXPECT_EQ(truth.imu_bias->accel_m_s2.norm(), 0.0);
+}
+
 TEST(Simulator, ARateBetweenPhysicsStepsIsRefused) {
   EXPECT_TRUE(IsSampleRate(20.0));
   EXPECT_FALSE(IsSampleRate(60.0)) << "16.67 ms is no multiple of 2 ms";

@@ -52,6 +52,23 @@ TEST(Report, OfACompassSaysNothingOfPositions) {
   EXPECT_EQ(html.find("id=\"trajectory\""), std::string::npos);
 }
 
+// A walker's chart marks its steps, two a cycle of the gait; without an IMU there is no chart.
+TEST(Report, ShowsWhatShakesTheImu) {
+  EXPECT_EQ(ExampleReport().find("id=\"force\""), std::string::npos);
+  Scenario scenario = ParseScenario(ExampleScenarioYaml(), "s.yaml");
+  RunRecord record = ExampleRun(scenario, {.seed = 42}, nullptr);
+  record.force = ForceLines{.step_hz = 0.5, .up_m_s2 = {0, 3, 1}, .ahead_m_s2 = {0, 1, 2}};
+  const Json result = BuildResult(scenario, record, 42, "image");
+  const auto report = [&] {
+    return HtmlReport({scenario, record, result, {}, "polnav run s.yaml"});
+  };
+  EXPECT_NE(report().find("id=\"force\""), std::string::npos);
+  EXPECT_NE(report().find("\"steps_hz\":null"), std::string::npos);
+  scenario.vehicle = {};
+  scenario.vehicle.hexapod.emplace().gait.cycle_s = 0.5;
+  EXPECT_NE(report().find("\"steps_hz\":4.0"), std::string::npos);
+}
+
 TEST(Report, EscapesTextFromOutside) {
   Scenario scenario = ParseScenario(ExampleScenarioYaml(), "s.yaml");
   scenario.name = "</script><script>alert(1)</script>";

@@ -23,7 +23,8 @@ struct EstimatorInfo {
   bool needs_polarization_camera = false;
   bool needs_imu = false;
   bool needs_optical_flow = false;
-  bool heading_only = false;  // a compass
+  bool heading_only = false;      // a compass
+  bool estimates_biases = false;  // of the IMU, and says so
 };
 
 inline constexpr std::array<EstimatorInfo, 11> kEstimators{{
@@ -67,11 +68,13 @@ inline constexpr std::array<EstimatorInfo, 11> kEstimators{{
      .description = "walking: IMU, optical flow and sky, with biases, on the manifold",
      .needs_polarimeter = true,
      .needs_imu = true,
-     .needs_optical_flow = true},
+     .needs_optical_flow = true,
+     .estimates_biases = true},
     {.name = "ukf_no_polarization",
      .description = "the same without the sky",
      .needs_imu = true,
-     .needs_optical_flow = true},
+     .needs_optical_flow = true,
+     .estimates_biases = true},
 }};
 
 // Null when there is none of that name; InfoOf then throws std::logic_error.

@@ -57,6 +57,7 @@ Listener::Listener(const Scenario& scenario, nav::Rig rig, const sim::RunKey& ke
     tracker_.emplace(scenario_.estimators.stereo.tracker, *rig_.stereo,
                      WantsDescriptors(scenario_));
   }
+  if (rig_.imu) force_.emplace(*rig_.imu);
 }
 
 void Listener::Start(const nav::StartPrior& start) {
@@ -103,6 +104,7 @@ void Listener::Take(const nav::Measurement& measurement) {
     readings_.Add(*light);
   }
   if (const auto* sky = std::get_if<nav::PolarizationImage>(&measurement)) KeepSkyImage(*sky);
+  if (const auto* imu = std::get_if<nav::ImuSample>(&measurement); imu && force_) force_->Add(*imu);
   for (RunningEstimator& e : estimators_) {
     const auto estimator_begin = Clock::now();
     static_cast<void>(Feed(measurement, e));
@@ -202,6 +204,7 @@ RunRecord Listener::Finish() {
     record_.estimators.push_back(std::move(e.run));
   }
   record_.polarization_readings = readings_.ErrorsAgainst(record_.truth);
+  if (force_) record_.force = force_->Lines();
   record_.peak_rss_mb = PeakMemoryMb();
   return std::move(record_);
 }

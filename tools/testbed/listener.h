@@ -17,6 +17,7 @@
 #include "sim/faults/fault_injector.h"
 #include "sim/simulator.h"
 #include "tools/testbed/estimators.h"
+#include "tools/testbed/force_spectrum.h"
 #include "tools/testbed/hash.h"
 #include "tools/testbed/polarization_readings.h"
 #include "tools/testbed/run_record.h"
@@ -70,7 +71,8 @@ class Listener {
   PolarizationReadings readings_;
   std::optional<nav::StereoTracker> tracker_;
   std::optional<nav::StereoFeatures> newest_seen_;  // where no pictures are drawn
-  double front_end_ms_ = 0.0;                       // of the newest pair of pictures
+  std::optional<ForceSpectrum> force_;
+  double front_end_ms_ = 0.0;  // of the newest pair of pictures
   std::vector<RunningEstimator> estimators_;
   std::map<std::string, Sha256> hashes_;
   RunRecord record_;

@@ -27,6 +27,17 @@ Json ToJson(const std::optional<RpeScore>& rpe) {
   return {{"trans_m", ToJson(rpe->trans_m)}, {"rot_deg", ToJson(rpe->rot_deg)}};
 }
 
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+// unit: suffix of what has one.
+Json TriadJson(const TriadBiasScore& triad, const std::string& unit) {
+  return {{"last_" + unit, triad.last},
+          {"last_sigma_" + unit, triad.last_sigma},
+          {"within_3_sigma", triad.within_3_sigma},
+          {"nees_last", OrNull(triad.nees_last)},
+          {"nees", OrNull(triad.nees)}};
+}
+
 // Leaves out what is null.
 void Flatten(const Json& tree, const std::string& path, std::vector<std::string>& paths) {
   if (tree.is_null()) return;
@@ -80,7 +91,12 @@ Json ToJson(const EstimatorScore& score) {
   return json;
 }
 
-std::vector<std::string> EstimatorMetrics(bool heading_only) {
+Json ToJson(const BiasScore& score) {
+  return {{"gyro", TriadJson(score.gyro_deg_s, "deg_s")},
+          {"accel", TriadJson(score.accel_mg, "mg")}};
+}
+
+std::vector<std::string> EstimatorMetrics(bool heading_only, bool biases) {
   EstimatorScore full;
   full.nees.emplace();
   full.recovery = Recovery{.heading_s = 0.0};
@@ -95,13 +111,17 @@ std::vector<std::string> EstimatorMetrics(bool heading_only) {
   }
   std::vector<std::string> paths;
   Flatten(ToJson(full), "", paths);
+  if (biases && !heading_only) {
+    const TriadBiasScore triad{.nees_last = 0.0, .nees = 0.0};
+    Flatten(ToJson(BiasScore{triad, triad}), "biases", paths);
+  }
   return paths;
 }
 
 std::vector<std::string> AllMetrics() {
   std::vector<std::string> paths(kRunMetrics.begin(), kRunMetrics.end());
   for (const EstimatorInfo& info : kEstimators) {
-    for (const std::string& metric : EstimatorMetrics(info.heading_only)) {
+    for (const std::string& metric : EstimatorMetrics(info.heading_only, info.estimates_biases)) {
       paths.push_back("estimators." + std::string(info.name) + "." + metric);
     }
   }

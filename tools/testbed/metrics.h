@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/testbed/bias_errors.h"
 #include "tools/testbed/option_tree.h"
 #include "tools/testbed/score.h"
 
@@ -14,9 +15,12 @@ namespace polnav::testbed {
 [[nodiscard]] Json ToJson(const Statistics& statistics);
 [[nodiscard]] Json ToJson(const HeadingScore& heading);
 [[nodiscard]] Json ToJson(const EstimatorScore& score);
+[[nodiscard]] Json ToJson(const BiasScore& score);
 
-// Of one estimator, without "estimators.<name>."; derived from ToJson(EstimatorScore).
-[[nodiscard]] std::vector<std::string> EstimatorMetrics(bool heading_only = false);
+// Of one estimator, without "estimators.<name>."; derived from ToJson(EstimatorScore), and
+// ToJson(BiasScore) where it estimates its IMU's biases.
+[[nodiscard]] std::vector<std::string> EstimatorMetrics(bool heading_only = false,
+                                                        bool biases = true);
 
 // Of a run with every known estimator. Streams and stages are named by the run itself.
 [[nodiscard]] std::vector<std::string> AllMetrics();

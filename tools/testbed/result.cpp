@@ -34,8 +34,7 @@ double AnsweredFraction(const OutcomeCounts& counts) {
   return asked > 0.0 ? static_cast<double>(counts.used) / asked : 0.0;
 }
 
-Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth,
-                   const std::vector<Stretch>& disturbed) {
+Json EstimatorJson(const EstimatorRun& run, const RunRecord& record, const Trajectory& truth) {
   Json json = {{"sha256", run.sha256}};
   if (const Json diagnostics = testbed::ToJson(run.diagnostics); !diagnostics.is_null()) {
     json["diagnostics"] = diagnostics;
@@ -44,11 +43,14 @@ Json EstimatorJson(const EstimatorRun& run, const Trajectory& truth,
   json["measurements"] = ToJson(run.counts);
   if (truth.empty()) return json;  // nothing to score against
   // No answer at all leaves every metric out: criteria about it fail.
-  if (const auto score = Score(truth, run.estimates, run.heading_only, disturbed)) {
+  if (const auto score = Score(truth, run.estimates, run.heading_only, record.disturbed)) {
     json.update(testbed::ToJson(*score));
     if (run.heading_only) json["tracked_fraction"] = AnsweredFraction(run.counts);
   } else {
     json["tracked_fraction"] = 0.0;
+  }
+  if (const auto biases = ScoreBiases(record.truth, run.estimates)) {
+    json["biases"] = testbed::ToJson(*biases);
   }
   if (run.alignment != Alignment::kNone) {
     json["alignment"] = NameOf(run.alignment);
@@ -176,7 +178,7 @@ Json BuildResult(const Scenario& scenario, const RunRecord& record, std::uint64_
   result["estimators"] = Json::object();
   const Trajectory truth = TrajectoryOf(record.truth);
   for (const EstimatorRun& run : record.estimators) {
-    result["estimators"][run.name] = EstimatorJson(run, truth, record.disturbed);
+    result["estimators"][run.name] = EstimatorJson(run, record, truth);
   }
   const std::vector<CriterionResult> criteria = EvaluateCriteria(scenario, result);
   result["criteria"] = Json::array();

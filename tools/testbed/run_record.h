@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "nav/api/time.h"
 #include "sim/truth.h"
 #include "tools/testbed/diagnostics.h"
+#include "tools/testbed/force_spectrum.h"
 #include "tools/testbed/pose_errors.h"
 
 namespace polnav::testbed {
@@ -84,6 +86,7 @@ struct RunRecord {
   std::map<std::string, StageTiming> timing;
   std::vector<SampleImage> images;
   std::vector<HeadingReading> polarization_readings;
+  std::optional<ForceLines> force;  // of the accelerometers; absent without, or too short
   double sim_duration_s = 0.0;
   double wall_s = 0.0;
   double peak_rss_mb = 0.0;

@@ -24,6 +24,32 @@ nav::ImuSample AtRest(const ImuOptions& options, std::uint64_t trial = 0,
   return Imu(options, 1, trial).Sample(begin, end, 0);
 }
 
+// What a unit without noise, scale and leaning axes reads at rest beyond gravity: from turn-on,
+// warming and wandering, whichever way it goes.
+TEST(ImuErrors, TheBiasIsWhatARestingUnitReads) {
+  ImuOptions options = ImuPreset("icm20602");
+  options.gyro_noise_deg_s_sqrt_hz = options.accel_noise_mg_sqrt_hz = 0.0;
+  options.gyro_scale_sigma = options.accel_scale_sigma = options.misalignment_sigma_deg = 0.0;
+  options.gyro_temperature_scale_1_k = options.accel_temperature_scale_1_k = 0.0;
+  options.gyro_resolution_deg_s = options.accel_resolution_mg = 0.0;
+  options.gyro_g_sensitivity_deg_s_g = 0.0;
+  options.gyro_bias_walk_deg_s_sqrt_s = 0.1;
+  options.temperature = {.start_deg_c = 25.0, .end_deg_c = 45.0, .time_constant_s = 100.0};
+  Imu imu(options, 1, 0);
+  const Eigen::Vector3d from_turn_on = imu.Bias(0).gyro_rad_s;
+  for (nav::TimeNs k = 1; k <= 1000; ++k) {
+    const nav::ImuSample sample = imu.Sample({.stamp = (k - 1) * kStep}, {.stamp = k * kStep},
+                                             static_cast<std::uint64_t>(k - 1));
+    const ImuBias bias = imu.Bias(k * kStep);
+    ASSERT_LT((sample.gyro_rad_s - bias.gyro_rad_s).norm(), 1e-15) << k;
+    ASSERT_LT((sample.accel_m_s2 - bias.accel_m_s2 - Eigen::Vector3d(0, 0, kGravity_m_s2)).norm(),
+              1e-13)
+        << k;
+  }
+  EXPECT_GT((imu.Bias(1000 * kStep).gyro_rad_s - from_turn_on).norm(), nav::DegToRad(0.05))
+      << "ten seconds' walk has a sigma of 0.3 deg/s an axis";
+}
+
 // The hexapod of [Zeng2020]: ICM-20602, gyroscopes off by 1 deg/s, accelerometers by 40 mg.
 TEST(ImuErrors, ABiasCanBeGivenByHand) {
   ImuOptions options = ImuPreset("perfect");

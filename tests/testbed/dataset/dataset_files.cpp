@@ -37,7 +37,9 @@ void AddDue(int t_ms, const sim::SensorOptions& sensors, std::vector<DatasetItem
   const nav::TimeNs stamp = t_ms * 1'000'000LL;
   const auto say = [&](const nav::Measurement& m) { items.emplace_back(m); };
   if (t_ms % 100 == 0) {
-    items.emplace_back(sim::Truth{stamp, OddPose(t_ms), OddVector(t_ms + 1), OddVector(t_ms + 2)});
+    sim::Truth truth{stamp, OddPose(t_ms), OddVector(t_ms + 1), OddVector(t_ms + 2)};
+    truth.imu_bias = sim::ImuBias{OddVector(t_ms + 3), OddVector(t_ms + 4)};
+    items.emplace_back(truth);
   }
   if (t_ms > 0) say(nav::ImuSample{stamp, OddVector(t_ms), OddVector(t_ms + 3)});
   if (t_ms % 50 == 0) {

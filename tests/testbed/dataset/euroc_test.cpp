@@ -80,6 +80,30 @@ TEST_F(Euroc, ARecordingComesBackInOrderAndToTheLastBit) {
   EXPECT_TRUE(dataset.problems().empty());
 }
 
+// What a filter believes of its IMU is scored alike on the recording. Others write nan.
+TEST_F(Euroc, TheImusBiasesComeBack) {
+  const auto truth_of = [](const std::vector<DatasetItem>& items) {
+    std::vector<sim::Truth> truth;
+    for (const DatasetItem& item : items) {
+      if (const auto* t = std::get_if<sim::Truth>(&item)) truth.push_back(*t);
+    }
+    return truth;
+  };
+  std::vector<sim::Truth> written = truth_of(items_);
+  ASSERT_TRUE(written.at(1).imu_bias.has_value());
+  written[1].imu_bias.reset();
+  WriteRecording(root_, scenario_, {written.begin(), written.end()});
+  Dataset dataset = Open();
+  const std::vector<sim::Truth> read = truth_of(ReadAll(dataset));
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    ASSERT_EQ(read[i].imu_bias.has_value(), i != 1) << i;
+    if (i == 1) continue;
+    EXPECT_EQ(read[i].imu_bias->gyro_rad_s, written[i].imu_bias->gyro_rad_s) << i;
+    EXPECT_EQ(read[i].imu_bias->accel_m_s2, written[i].imu_bias->accel_m_s2) << i;
+  }
+}
+
 TEST_F(Euroc, EverythingIsOnDiskWhileTheRunGoesOn) {
   const fs::path other = folder_.path() / "running";
   EurocWriter writer(other, scenario_, sim::NominalRig(scenario_.sensors));

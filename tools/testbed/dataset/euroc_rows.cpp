@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <optional>
 
 namespace polnav::testbed {
 namespace {
@@ -39,6 +40,15 @@ nav::Pose PoseAt(const TableReader& reader, const TableRow& row) {
   // What was printed in full stays as it is, to the last bit.
   if (std::abs(length - 1.0) > 1e-12) q.normalize();
   return {q, VectorAt(reader, row, 0)};
+}
+
+// Nothing where a field is nan.
+std::optional<sim::ImuBias> BiasAt(const TableReader& reader, const TableRow& row) {
+  for (std::size_t i = kWithVelocity; i < kWithBiases; ++i) {
+    if (row.fields[i] == "nan") return std::nullopt;
+  }
+  return sim::ImuBias{VectorAt(reader, row, kWithVelocity),
+                      VectorAt(reader, row, kWithVelocity + 3)};
 }
 
 }  // namespace
@@ -101,8 +111,11 @@ std::string RowOf(const nav::OpticalFlowSample& sample) {
 std::string RowOf(const sim::Truth& truth) {
   std::vector<double> values = PoseValues(truth.T_WB);
   Append(truth.v_WB_m_s, values);
-  Append(Eigen::Vector3d::Constant(std::nan("")), values);
-  Append(Eigen::Vector3d::Constant(std::nan("")), values);
+  const sim::ImuBias unknown{Eigen::Vector3d::Constant(std::nan("")),
+                             Eigen::Vector3d::Constant(std::nan(""))};
+  const sim::ImuBias bias = truth.imu_bias.value_or(unknown);
+  Append(bias.gyro_rad_s, values);
+  Append(bias.accel_m_s2, values);
   Append(truth.w_WB_B_rad_s, values);
   return Row(truth.stamp, values);
 }
@@ -150,6 +163,7 @@ sim::Truth TruthFrom(const TableReader& reader, const TableRow& row) {
   const std::size_t given = row.fields.size();
   sim::Truth truth{.stamp = row.stamp, .T_WB = PoseAt(reader, row)};
   if (given >= kWithVelocity) truth.v_WB_m_s = VectorAt(reader, row, kPoseFields);
+  if (given >= kWithBiases) truth.imu_bias = BiasAt(reader, row);
   if (given >= kWithTurnRate) truth.w_WB_B_rad_s = VectorAt(reader, row, kWithBiases);
   return truth;
 }

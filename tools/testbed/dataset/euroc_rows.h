@@ -6,7 +6,7 @@
 //   quality ref0      p_WB [m], q_WB (w, x, y, z), v_WB [m/s] in W, gnss_aided (1 or 0)
 //   state_groundtruth_estimate0
 //             p_WB, q_WB (w, x, y, z), v_WB, b_w [rad/s], b_a [m/s^2], then Polnav's w_WB [rad/s]
-//             in B. Biases are not known here: nan. Reading, all after q_WB may be missing.
+//             in B. Biases that are not known: nan. Reading, all after q_WB may be missing.
 // Every row begins with the stamp [ns].
 #pragma once
 

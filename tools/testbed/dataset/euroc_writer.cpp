@@ -57,7 +57,7 @@ bool HasPictures(const std::string& sensor) { return HeaderOf(sensor) == Picture
 
 Json TruthYaml() {
   return {{"sensor_type", "visual-inertial"},
-          {"comment", "the simulator's own poses T_WB; biases are not in it"}};
+          {"comment", "the simulator's own poses T_WB and the IMU's own biases"}};
 }
 
 }  // namespace

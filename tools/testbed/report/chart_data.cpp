@@ -90,6 +90,27 @@ Json MemoryData(const RunRecord& record) {
   return {{"t", Picked(t_s, indices)}, {"mb", Picked(record.rss_mb, indices)}};
 }
 
+// Amplitudes by frequency, thinned by their peaks; a micrometre a second squared is no line.
+Json LineData(const std::vector<double>& amplitudes, double step_hz) {
+  Json f = Json::array();
+  Json v = Json::array();
+  for (const std::size_t i : Thin(amplitudes, kMaxPoints)) {
+    f.push_back(Rounded(static_cast<double>(i) * step_hz));
+    v.push_back(std::round(amplitudes[i] * 1e6) / 1e6);
+  }
+  return {{"t", f}, {"v", v}};
+}
+
+// With the rate of the steps where the vehicle walks: two a cycle.
+Json ForceData(const std::optional<ForceLines>& force, const sim::VehicleOptions& vehicle) {
+  if (!force) return nullptr;
+  Json data = {{"up", LineData(force->up_m_s2, force->step_hz)},
+               {"ahead", LineData(force->ahead_m_s2, force->step_hz)},
+               {"steps_hz", nullptr}};
+  if (vehicle.hexapod) data["steps_hz"] = Rounded(2.0 / vehicle.hexapod->gait.cycle_s);
+  return data;
+}
+
 Json StretchData(const std::vector<Stretch>& stretches) {
   Json list = Json::array();
   for (const Stretch& s : stretches) list.push_back({{"begin", s.begin_s}, {"end", s.end_s}});
@@ -132,6 +153,7 @@ Json ChartData(const RunRecord& record, const Scenario& scenario) {
     data["estimators"].push_back(EstimatorData(run, truth));
   }
   data["readings"] = ReadingData(record.polarization_readings);
+  data["force"] = ForceData(record.force, scenario.vehicle);
   data["memory"] = MemoryData(record);
   data["faults"] = StretchData(FaultTimes(scenario.faults, record.sim_duration_s));
   data["disturbances"] = StretchData(record.disturbed);

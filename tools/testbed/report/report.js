@@ -124,6 +124,23 @@
          "time [s]", "MB", { y: { beginAtZero: true }, x: wholeRun });
   }
 
+  // Amplitudes span decades. The first is the mean's, which was taken away.
+  function drawForce() {
+    if (!run.force) return;
+    const lifted = (s) => points(s.t, s.v.map((v) => Math.max(v, 1e-6))).slice(1);
+    const sets = [line("up", lifted(run.force.up), color("--c0")),
+                  line("ahead", lifted(run.force.ahead), color("--c1"))];
+    const steps = run.force.steps_hz;
+    if (steps !== null) {
+      const values = [...run.force.up.v.slice(1), ...run.force.ahead.v.slice(1)];
+      const top = Math.max(...values), bottom = Math.max(Math.min(...values), 1e-6);
+      sets.push(line("steps, " + steps + " Hz", points([steps, steps], [bottom, top]),
+                     color("--soft"), { borderDash: [6, 4] }));
+    }
+    draw("force", sets, "frequency [Hz]", "amplitude [m/s\u00b2]",
+         { y: { type: "logarithmic" }, x: { min: 0 } });
+  }
+
   const over = (label, series, stroke, extra) =>
     line(label, points(series.t, series.v), stroke, extra);
 
@@ -186,6 +203,7 @@
     drawPosition();
     drawReadings();
     drawMemory();
+    drawForce();
     drawNees("nees-heading", "heading", "NEES", 3.84);
     drawNees("nees-position", "position", "NEES", 7.81);
     drawVision();
