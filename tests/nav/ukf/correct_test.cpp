@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <limits>
+
 namespace polnav::nav::ukf {
 namespace {
 
@@ -60,6 +63,34 @@ TEST(Correct, AReadingBeyondTheGateChangesNothing) {
   const Covariance before = state.P;
   const Correction done = Correct<1>(Seen(state), Scalar(100.0), Scalar(0.1), 4.0, state);
   EXPECT_TRUE(done.gated);
+  EXPECT_EQ(state.P, before);
+  EXPECT_EQ(state.v_WI.x(), 0.0);
+}
+
+// A covariance that is none: what a reading would make of it is worth nothing, or is repaired and
+// said to be.
+TEST(Correct, ALostDefinitenessIsReported) {
+  State state = Unsure();
+  state.P(kVelocity, kVelocity) = -2.0;  // the reading's own variance comes out negative
+  const Covariance before = state.P;
+  EXPECT_FALSE(Correct<1>(Seen(state), Scalar(0.4), Scalar(0.1), 100.0, state).usable);
+  EXPECT_EQ(state.P, before);
+
+  state = Unsure();
+  state.P(kGyroBias, kGyroBias) = -1e-3;  // elsewhere
+  const Correction done = Correct<1>(Seen(state), Scalar(0.4), Scalar(0.1), 100.0, state);
+  EXPECT_TRUE(done.usable);
+  EXPECT_TRUE(done.repaired);
+  EXPECT_TRUE(IsSound(state.P));
+  EXPECT_GE(Eigen::SelfAdjointEigenSolver<Covariance>(state.P).eigenvalues().minCoeff(), -1e-12);
+}
+
+TEST(Correct, NoNumberChangesNothing) {
+  State state = Unsure();
+  const Covariance before = state.P;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(Correct<1>(Seen(state), Scalar(nan), Scalar(0.1), 4.0, state).usable);
+  EXPECT_FALSE(Correct<1>(Seen(state), Scalar(0.4), Scalar(nan), 4.0, state).usable);
   EXPECT_EQ(state.P, before);
   EXPECT_EQ(state.v_WI.x(), 0.0);
 }

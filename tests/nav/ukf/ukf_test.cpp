@@ -8,6 +8,7 @@
 
 #include "nav/inertial/options.h"
 #include "nav/polarization/sky_heading.h"
+#include "nav/ukf/paper_ukf.h"
 
 namespace polnav::nav {
 namespace {
@@ -138,6 +139,38 @@ TEST(Ukf, ReadingsThatAreNoNumbersChangeNothing) {
   Stand(ukf, 2 * kNsPerSecond, 3 * kNsPerSecond, 0.6);
   EXPECT_TRUE(ukf.Now()->T_WB.p.allFinite());
   EXPECT_TRUE(ukf.Now()->covariance.allFinite());
+}
+
+// The paper's filter on the same streams: no reading that is no number reaches what it answers.
+TEST(PaperUkf, ReadingsThatAreNoNumbersChangeNothing) {
+  const auto answer = [](bool nonsense) {
+    PaperUkf ukf({}, ImuSheet(), FlowSheet(), StartPrior{.heading_sigma_rad = DegToRad(2.0)},
+                 SkySource{PolarizationOptions{}, PolarimeterCalibration{}, Sun});
+    std::optional<Estimate> last;
+    for (TimeNs t = 10 * kMs; t <= 3 * kNsPerSecond; t += 10 * kMs) {
+      if (nonsense && t % (70 * kMs) == 0) {
+        ImuSample imu = Imu(t - kMs);
+        imu.accel_m_s2.x() = kNan;
+        EXPECT_EQ(ukf.Process(imu).outcome, Outcome::kUnusable);
+        OpticalFlowSample flow = Flow(t - kMs);
+        flow.flow_rad.y() = kNan;
+        EXPECT_EQ(ukf.Process(flow).outcome, Outcome::kUnusable);
+        PolarizationSample light = Light(t - kMs, 0.6);
+        light.channel[0] = kNan;
+        EXPECT_EQ(ukf.Process(light).outcome, Outcome::kUnusable);
+      }
+      const Report report = ukf.Process(Imu(t));
+      if (report.estimate) last = report.estimate;
+      if (t % (20 * kMs) == 0) (void)ukf.Process(Flow(t));
+      if (t % (50 * kMs) == 0) (void)ukf.Process(Light(t, 0.6));
+    }
+    return last.value();
+  };
+  const Estimate sound = answer(false);
+  const Estimate with = answer(true);
+  EXPECT_TRUE(with.covariance.allFinite());
+  EXPECT_EQ(with.T_WB.p, sound.T_WB.p);
+  EXPECT_EQ(with.covariance, sound.covariance);
 }
 
 // Ten seconds below something that hides the sky: the heading becomes less certain, and finds back

@@ -130,15 +130,16 @@
     const lifted = (s) => points(s.t, s.v.map((v) => Math.max(v, 1e-6))).slice(1);
     const sets = [line("up", lifted(run.force.up), color("--c0")),
                   line("ahead", lifted(run.force.ahead), color("--c1"))];
+    const values = sets.flatMap((set) => set.data.map((p) => p.y));
+    const top = Math.max(...values);
+    const bottom = 10 ** Math.floor(Math.log10(Math.min(...values)));
     const steps = run.force.steps_hz;
     if (steps !== null) {
-      const values = [...run.force.up.v.slice(1), ...run.force.ahead.v.slice(1)];
-      const top = Math.max(...values), bottom = Math.max(Math.min(...values), 1e-6);
       sets.push(line("steps, " + steps + " Hz", points([steps, steps], [bottom, top]),
                      color("--soft"), { borderDash: [6, 4] }));
     }
     draw("force", sets, "frequency [Hz]", "amplitude [m/s\u00b2]",
-         { y: { type: "logarithmic" }, x: { min: 0 } });
+         { y: { type: "logarithmic", min: bottom }, x: { min: 0 } });
   }
 
   const over = (label, series, stroke, extra) =>
