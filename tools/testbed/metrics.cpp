@@ -83,7 +83,7 @@ Json ToJson(const EstimatorScore& score) {
   }
   if (score.recovery) {
     const Recovery& r = *score.recovery;
-    json["recovery"] = {{"heading_s", r.heading_s ? Json(*r.heading_s) : Json(nullptr)},
+    json["recovery"] = {{"heading_s", OrNull(r.heading_s)},
                         {"tracking_s", r.tracking_s},
                         {"disturbances", r.disturbances}};
   }
