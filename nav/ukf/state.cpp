@@ -31,7 +31,10 @@ void Move(const Error& by, State& state) {
   TurnBlock(kVelocity, turn.toRotationMatrix(), state.P);
 }
 
-bool IsSound(const Covariance& P) { return P.allFinite() && P.diagonal().minCoeff() >= 0.0; }
+// Zero times what is not finite is not a number. A sum is faster than allFinite().
+bool IsSound(const Covariance& P) {
+  return (0.0 * P.array()).sum() == 0.0 && P.diagonal().minCoeff() >= 0.0;
+}
 
 bool Repair(Covariance& P) {
   if (!P.allFinite()) return false;
