@@ -46,6 +46,22 @@ Prior Eliminate(const NormalEquations::Reduced& n, const Indices& gone, const In
   return prior;
 }
 
+// X with X^T X the covariance of the last `count` unknowns of this order: the last block of the
+// Cholesky factor is that of their own information. Rounding may take the definiteness of what is
+// hardly known; a damping far below what anything is known to gives it back.
+Eigen::MatrixXd LastInverseRoot(const NormalEquations& window, const Indices& order,
+                                Eigen::Index count) {
+  for (const double damping : {0.0, 1e-10, 1e-8, 1e-6}) {
+    const Eigen::LLT<Eigen::MatrixXd> solver(window.Reduce(damping).H(order, order));
+    if (solver.info() != Eigen::Success) continue;
+    return solver.matrixLLT()
+        .bottomRightCorner(count, count)
+        .triangularView<Eigen::Lower>()
+        .solve(Eigen::MatrixXd::Identity(count, count));
+  }
+  throw std::logic_error("NewestCovariance: the window's information is singular");
+}
+
 }  // namespace
 
 void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOptions& options,
@@ -79,7 +95,6 @@ void MarginalizeOldest(const RectifiedCamera& camera, const BundleAdjustmentOpti
   window.prior = prior;
 }
 
-// With the asked ones last, the last block of the Cholesky factor is that of their own information.
 StateCovariance NewestCovariance(const NormalEquations& window) {
   const WindowLayout& layout = window.layout();
   const std::size_t newest = layout.keyframes - 1;
@@ -94,15 +109,7 @@ StateCovariance NewestCovariance(const NormalEquations& window) {
   ask(layout.Pose(newest), 6, 0);
   if (layout.inertial) ask(layout.Motion(newest), 9, 6);
   ask(layout.Errors(), kSkyErrors, 15);
-  const Eigen::LLT<Eigen::MatrixXd> solver(window.Reduce().H(order, order));
-  if (solver.info() != Eigen::Success) {
-    throw std::logic_error("NewestCovariance: the window's information is singular");
-  }
-  const Eigen::Index count = std::ssize(place);
-  const Eigen::MatrixXd root = solver.matrixLLT()
-                                   .bottomRightCorner(count, count)
-                                   .triangularView<Eigen::Lower>()
-                                   .solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd root = LastInverseRoot(window, order, std::ssize(place));
   StateCovariance covariance = StateCovariance::Zero();
   covariance(place, place) = root.transpose() * root;
   return covariance;

@@ -136,6 +136,20 @@ TEST(BundleAdjustment, AHeadingEdgeTurnsTheWindowByItsWeight) {
   EXPECT_NEAR(WrapPi(CompassHeading(first.T_WB.q) - before), 0.002, 2e-5);
 }
 
+// Where the start is hardly known, position and heading are weaker than what ties the keyframes to
+// each other by more digits than a double has.
+TEST(Marginalization, WhatRoundingTakesIsNoReasonToFail) {
+  for (const double variance : {1e6, 1e10, 1e12, 1e14}) {
+    StreetWindow s(4, 0.0);
+    s.Begin(Matrix6d::Identity() * variance);
+    StateCovariance covariance;
+    ASSERT_NO_THROW(covariance = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window)))
+        << variance;
+    ASSERT_TRUE(covariance.allFinite());
+    EXPECT_GT(covariance.diagonal().head<3>().minCoeff(), 100.0) << variance;
+  }
+}
+
 // A turn in the mounting is the heading's alone to tell and stays with its prior; what changes with
 // the light's axis, while vision says how the drive turned, comes out, and outlives the keyframes
 // that showed it.
