@@ -65,7 +65,7 @@ std::optional<Reprojection> Reproject(const RectifiedCamera& camera, const Viewp
     r.by_target.row(row).tail<3>() = b.cross(w);
   }
   r.by_landmark.leftCols<2>() = by_w * host.R_WC.leftCols<2>();
-  // Seen_W is linear in rho through the arm; those of host and target differ only by the attitude
+  // seen_W is linear in rho through the arm; those of host and target differ only by the attitude
   // between them.
   r.by_landmark.col(2) = by_w * (host.arm_W + between_W - target.arm_W);
   r.by_landmark(2, 2) -= weights.z() * fb_z;

@@ -92,6 +92,10 @@ struct StreetWindow {
     AddErrors(window.errors, kErrors * kErrors * ErrorMatrix::Identity(), window.prior);
   }
 
+  StateCovariance Covariance() const {
+    return NewestCovariance(LinearizeWindow(camera, options, window));
+  }
+
   void Add(const Pose& pose, const StereoFeatures& seen) {
     const std::uint64_t id = window.keyframes.empty() ? 0 : window.keyframes.back().id + 1;
     window.keyframes.push_back({.id = id, .stamp = seen.stamp, .T_WB = pose});
@@ -143,8 +147,7 @@ TEST(Marginalization, WhatRoundingTakesIsNoReasonToFail) {
     StreetWindow s(4, 0.0);
     s.Begin(Matrix6d::Identity() * variance);
     StateCovariance covariance;
-    ASSERT_NO_THROW(covariance = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window)))
-        << variance;
+    ASSERT_NO_THROW(covariance = s.Covariance()) << variance;
     ASSERT_TRUE(covariance.allFinite());
     EXPECT_GT(covariance.diagonal().head<3>().minCoeff(), 100.0) << variance;
   }
@@ -169,12 +172,10 @@ TEST(BundleAdjustment, TheSkysHarmonicsAreFoundFromHowTheyChange) {
   ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
   EXPECT_NEAR(s.window.errors(2), harmonic, 0.1 * harmonic);
   EXPECT_LT(std::abs(s.window.errors(1)), 0.1 * harmonic);
-  const double sigma =
-      std::sqrt(NewestCovariance(LinearizeWindow(s.camera, s.options, s.window))(17, 17));
+  const double sigma = std::sqrt(s.Covariance()(17, 17));
   EXPECT_LT(sigma, 0.1 * StreetWindow::kErrors);
   MarginalizeOldest(s.camera, s.options, s.window);
-  EXPECT_NEAR(std::sqrt(NewestCovariance(LinearizeWindow(s.camera, s.options, s.window))(17, 17)),
-              sigma, 1e-3 * sigma);
+  EXPECT_NEAR(std::sqrt(s.Covariance()(17, 17)), sigma, 1e-3 * sigma);
 }
 
 TEST(BundleAdjustment, OutliersAreRemovedAndNothingElse) {
@@ -192,9 +193,9 @@ TEST(BundleAdjustment, OutliersAreRemovedAndNothingElse) {
 TEST(Marginalization, KeepsTheNewestPosesCovariance) {
   StreetWindow s(6, 0.1);
   ASSERT_TRUE(AdjustBundle(s.camera, s.options, s.window).usable);
-  const StateCovariance before = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window));
+  const StateCovariance before = s.Covariance();
   MarginalizeOldest(s.camera, s.options, s.window);
-  const StateCovariance after = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window));
+  const StateCovariance after = s.Covariance();
   EXPECT_LT((after - before).norm(), 1e-6 * before.norm());
 }
 
@@ -227,9 +228,9 @@ TEST(Marginalization, KeepsWhatTheImuKnows) {
     for (int k = 0; k < 20; ++k) sum.Add({0, 0, 0}, {0, 0, kGravity_m_s2}, 0.01, noise);
     s.window.keyframes[i].inertial = MakeInertialEdge(sum, {1e-5, 1e-4}, {});
   }
-  const StateCovariance before = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window));
+  const StateCovariance before = s.Covariance();
   MarginalizeOldest(s.camera, s.options, s.window);
-  const StateCovariance after = NewestCovariance(LinearizeWindow(s.camera, s.options, s.window));
+  const StateCovariance after = s.Covariance();
   for (int k = 0; k < kState; ++k) EXPECT_NEAR(after(k, k) / before(k, k), 1.0, 1e-6) << k;
 }
 

@@ -1,35 +1,19 @@
 #include "tools/testbed/bias_errors.h"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "nav/inertial/options.h"
+#include "tools/testbed/score.h"
 #include "tools/testbed/statistics.h"
+#include "tools/testbed/trajectory.h"
 
 namespace polnav::testbed {
 namespace {
-
-constexpr nav::TimeNs kTogether = 10'000'000;  // as poses are; a bias wanders far more slowly
 
 struct TriadError {
   Eigen::Vector3d error;
   Eigen::Matrix3d covariance;
 };
-
-std::optional<sim::ImuBias> TruthAt(const std::vector<sim::Truth>& truth, nav::TimeNs stamp) {
-  const auto found =
-      std::lower_bound(truth.begin(), truth.end(), stamp - kTogether,
-                       [](const sim::Truth& t, nav::TimeNs at) { return t.stamp < at; });
-  if (found == truth.end() || found->stamp > stamp + kTogether) return std::nullopt;
-  return found->imu_bias;
-}
-
-std::optional<double> NeesOf(const TriadError& e) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(e.covariance);
-  if (llt.info() != Eigen::Success) return std::nullopt;
-  return e.error.dot(llt.solve(e.error));
-}
 
 TriadBiasScore ScoreTriad(const std::vector<TriadError>& errors, double unit) {
   const TriadError& last = errors.back();
@@ -38,10 +22,10 @@ TriadBiasScore ScoreTriad(const std::vector<TriadError>& errors, double unit) {
   TriadBiasScore score{.last = last.error.norm() / unit,
                        .last_sigma = sigma.matrix().norm() / unit,
                        .within_3_sigma = static_cast<double>(within) / 3.0,
-                       .nees_last = NeesOf(last)};
+                       .nees_last = NeesOf(last.error, last.covariance)};
   std::vector<double> nees;
   for (const TriadError& e : errors) {
-    if (const auto value = NeesOf(e)) nees.push_back(*value);
+    if (const auto value = NeesOf(e.error, e.covariance)) nees.push_back(*value);
   }
   if (!nees.empty()) score.nees = Summarize(nees).mean;
   return score;
@@ -55,12 +39,13 @@ std::optional<BiasScore> ScoreBiases(const std::vector<sim::Truth>& truth,
   std::vector<TriadError> accel;
   for (const nav::Estimate& e : estimates) {
     if (!e.biases) continue;
-    const std::optional<sim::ImuBias> known = TruthAt(truth, e.stamp);
-    if (!known) continue;
+    const sim::Truth* at = NearestWithin(truth, e.stamp, kTogether);
+    if (at == nullptr || !at->imu_bias) continue;
+    const sim::ImuBias& known = *at->imu_bias;
     gyro.push_back(
-        {e.biases->gyro_rad_s - known->gyro_rad_s, e.biases->covariance.topLeftCorner<3, 3>()});
+        {e.biases->gyro_rad_s - known.gyro_rad_s, e.biases->covariance.topLeftCorner<3, 3>()});
     accel.push_back(
-        {e.biases->accel_m_s2 - known->accel_m_s2, e.biases->covariance.bottomRightCorner<3, 3>()});
+        {e.biases->accel_m_s2 - known.accel_m_s2, e.biases->covariance.bottomRightCorner<3, 3>()});
   }
   if (gyro.empty()) return std::nullopt;
   return BiasScore{.gyro_deg_s = ScoreTriad(gyro, nav::DegToRad(1.0)),

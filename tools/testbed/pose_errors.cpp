@@ -9,19 +9,6 @@
 namespace polnav::testbed {
 namespace {
 
-// Index of the nearest stamp, the earlier of two equally near (numpy's argmin takes the first).
-std::size_t Nearest(const Trajectory& trajectory, nav::TimeNs stamp) {
-  const auto after =
-      std::lower_bound(trajectory.begin(), trajectory.end(), stamp,
-                       [](const StampedPose& pose, nav::TimeNs t) { return pose.stamp < t; });
-  const auto index = static_cast<std::size_t>(after - trajectory.begin());
-  if (index == 0) return 0;
-  if (index == trajectory.size()) return index - 1;
-  return stamp - trajectory[index - 1].stamp <= trajectory[index].stamp - stamp ? index - 1 : index;
-}
-
-nav::TimeNs Distance(nav::TimeNs a, nav::TimeNs b) { return a > b ? a - b : b - a; }
-
 struct Moments {
   Eigen::Vector3d mean_truth = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_estimate = Eigen::Vector3d::Zero();
@@ -71,10 +58,10 @@ std::vector<PosePair> Associate(const Trajectory& truth, const Trajectory& estim
   const Trajectory& longer = truth_is_shorter ? estimate : truth;
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : shorter) {
-    const StampedPose& other = longer[Nearest(longer, pose.stamp)];
-    if (Distance(other.stamp, pose.stamp) > max_difference) continue;
-    const StampedPose& t = truth_is_shorter ? pose : other;
-    const StampedPose& e = truth_is_shorter ? other : pose;
+    const StampedPose* other = NearestWithin(longer, pose.stamp, max_difference);
+    if (other == nullptr) continue;
+    const StampedPose& t = truth_is_shorter ? pose : *other;
+    const StampedPose& e = truth_is_shorter ? *other : pose;
     pairs.push_back({e.stamp, t.T_WB, e.T_WB});
   }
   return pairs;

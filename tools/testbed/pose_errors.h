@@ -26,7 +26,7 @@ struct PosePair {
 // evo's rule: each pose of the shorter trajectory (the estimate when equally long) gets the nearest
 // of the other, unless that is more than max_difference away.
 [[nodiscard]] std::vector<PosePair> Associate(const Trajectory& truth, const Trajectory& estimate,
-                                              nav::TimeNs max_difference = 10'000'000);
+                                              nav::TimeNs max_difference = kTogether);
 
 enum class Alignment {
   kNone,

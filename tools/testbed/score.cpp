@@ -27,13 +27,6 @@ std::vector<Judged> Judge(const Trajectory& truth, const std::vector<nav::Estima
   return judged;
 }
 
-std::optional<double> PositionNees(const PosePair& pair, const nav::Matrix6d& covariance) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(covariance.topLeftCorner<3, 3>());
-  if (llt.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Vector3d error = pair.truth.p - pair.estimate.p;
-  return error.dot(llt.solve(error));
-}
-
 double MeanOf(const std::vector<double>& values) { return Summarize(values).mean; }
 
 std::optional<Nees> ScoreNees(const ErrorSeries& series) {
@@ -62,7 +55,7 @@ void AddPosition(const Judged& judged, ErrorSeries& series) {
   const Eigen::Vector3d error_m = judged.pair.estimate.p - judged.pair.truth.p;
   series.position_m.push_back(error_m.norm());
   series.horizontal_m.push_back(error_m.head<2>().norm());
-  if (const auto nees = PositionNees(judged.pair, judged.estimate->covariance)) {
+  if (const auto nees = NeesOf(error_m, judged.estimate->covariance.topLeftCorner<3, 3>())) {
     series.position_nees.push_back(*nees);
   }
 }
@@ -113,6 +106,12 @@ std::optional<RpeScore> ScoreRpe(const std::vector<PosePair>& pairs, double delt
   if (errors.translation_m.empty()) return std::nullopt;
   for (double& angle : errors.angle_rad) angle = nav::RadToDeg(angle);
   return RpeScore{Summarize(errors.translation_m), Summarize(errors.angle_rad)};
+}
+
+std::optional<double> NeesOf(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return error.dot(llt.solve(error));
 }
 
 HeadingScore ScoreHeading(const std::vector<double>& signed_errors) {

@@ -61,6 +61,10 @@ struct PositionScore {
   double last = 0.0;  // at the end of the run: what a closed path fails to close by
 };
 
+// Squared error over its covariance; nothing when that is not positive definite.
+[[nodiscard]] std::optional<double> NeesOf(const Eigen::Vector3d& error,
+                                           const Eigen::Matrix3d& covariance);
+
 // Mean normalized estimation error squared: 3 (position) and 1 (heading) when honest, larger when
 // too sure of itself. Within: share of heading errors inside three sigma, 0.997 when honest.
 struct Nees {

@@ -1,6 +1,9 @@
 // Where was the vehicle, when? Poses T_WB in order of time, of the truth or of an estimator.
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <vector>
 
 #include "nav/api/estimate.h"
@@ -16,6 +19,24 @@ struct StampedPose {
 };
 
 using Trajectory = std::vector<StampedPose>;
+
+// What is further apart in time does not belong together.
+inline constexpr nav::TimeNs kTogether = 10'000'000;
+
+// The one of the nearest stamp, the earlier of two equally near (numpy's argmin takes the first).
+// In order of time. Null when none is within max_difference.
+template <typename Stamped>
+[[nodiscard]] const Stamped* NearestWithin(const std::vector<Stamped>& series, nav::TimeNs stamp,
+                                           nav::TimeNs max_difference) {
+  auto at = std::lower_bound(series.begin(), series.end(), stamp,
+                             [](const Stamped& s, nav::TimeNs t) { return s.stamp < t; });
+  if (at != series.begin() &&
+      (at == series.end() || stamp - std::prev(at)->stamp <= at->stamp - stamp)) {
+    --at;
+  }
+  if (at == series.end() || std::abs(at->stamp - stamp) > max_difference) return nullptr;
+  return &*at;
+}
 
 [[nodiscard]] inline Trajectory TrajectoryOf(const std::vector<nav::Estimate>& estimates) {
   Trajectory trajectory;

@@ -12,11 +12,6 @@
 namespace polnav::testbed {
 namespace {
 
-constexpr const char* kForceNote =
-    "Amplitude of the specific force by frequency, mean over stretches of some ten seconds. "
-    "Dashed, "
-    "where the vehicle walks: the rate of its steps.";
-
 std::string Base64(const std::vector<unsigned char>& bytes) {
   constexpr std::string_view kAlphabet =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -148,7 +143,12 @@ std::string ChartSections(const ReportInput& input) {
     html += ChartCard("readings", "Single polarization readings",
                       "The heading that one sample alone would give, against the truth.");
   }
-  if (input.record.force) html += ChartCard("force", "Spectrum of the accelerometers", kForceNote);
+  if (input.record.force) {
+    html +=
+        ChartCard("force", "Spectrum of the accelerometers",
+                  "Amplitude of the specific force by frequency, mean over stretches of some ten "
+                  "seconds. Dashed, where the vehicle walks: the rate of its steps.");
+  }
   if (!input.record.rss_mb.empty()) {
     html += ChartCard("memory", "Memory", "Of the whole process.");
   }

@@ -10,6 +10,11 @@ constexpr double kCorrection = 4.0;
 
 }  // namespace
 
+int MoreLooks(std::string_view statistic) {
+  if (statistic == "success_rate") return 0;
+  return statistic == "median" ? 2 : 1;
+}
+
 std::size_t NextLook(std::size_t n) {
   std::size_t look = kFirstLook;
   while (look <= n) look += (look + 3) / 4;

@@ -14,6 +14,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "tools/testbed/statistics/interval.h"
 
@@ -26,6 +27,9 @@ struct StoppingRule {
   bool relative = false;  // half_width is a share of the statistic's magnitude
   int more_looks = 0;     // after the first that is narrow, before the end
 };
+
+// Of a study by "mean", "median", "success_rate" or another statistic.
+[[nodiscard]] int MoreLooks(std::string_view statistic);
 
 // The look after n trials; kFirstLook from 0.
 [[nodiscard]] std::size_t NextLook(std::size_t n);

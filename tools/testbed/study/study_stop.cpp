@@ -18,12 +18,6 @@ struct Asked {
   std::vector<TrialValues> values;  // of each case
 };
 
-// See stopping.h.
-int MoreLooks(const std::string& statistic) {
-  if (statistic == "success_rate") return 0;
-  return statistic == "median" ? 2 : 1;
-}
-
 std::vector<Asked> AskedOf(const StudyTable& table) {
   std::vector<Asked> all;
   if (!table.study().contains("stop")) return all;
@@ -53,21 +47,18 @@ bool IsNarrow(const Asked& asked, const StatisticOfTrials& of) {
 StopCheck Check(const StudyTable& table, const Asked& asked, const TrialValues& values,
                 std::uint64_t samples) {
   const std::uint64_t cases = table.cases().size();
-  const StatisticOfTrials of =
-      Compute(asked.statistic, FirstOf(values, samples, cases), table.seed());
-  StopCheck check{.what = NameOf(asked.statistic),
-                  .actual = of.actual,
-                  .n = of.n,
-                  .half_width = JudgedHalfWidth(of.actual, of.n, asked.rule.relative),
-                  .asked = asked.rule.half_width,
-                  .relative = asked.rule.relative,
-                  .known = IsNarrow(asked, of)};
-  if (asked.rule.more_looks > 0) {
-    const auto before = LookBefore(samples, asked.rule.more_looks);
-    check.known = before && IsNarrow(asked, Compute(asked.statistic,
-                                                    FirstOf(values, *before, cases), table.seed()));
-  }
-  return check;
+  const auto after = [&](std::uint64_t look) {
+    return Compute(asked.statistic, FirstOf(values, look, cases), table.seed());
+  };
+  const StatisticOfTrials of = after(samples);
+  const auto decisive = LookBefore(samples, asked.rule.more_looks);
+  return {.what = NameOf(asked.statistic),
+          .actual = of.actual,
+          .n = of.n,
+          .half_width = JudgedHalfWidth(of.actual, of.n, asked.rule.relative),
+          .asked = asked.rule.half_width,
+          .relative = asked.rule.relative,
+          .known = decisive && IsNarrow(asked, *decisive == samples ? of : after(*decisive))};
 }
 
 StopLook LookAt(const StudyTable& table, const std::vector<Asked>& all, std::uint64_t samples) {
