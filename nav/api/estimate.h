@@ -68,15 +68,17 @@ struct Innovation {
 // What became of one measurement.
 struct Report {
   Outcome outcome = Outcome::kIgnored;
-  int features = 0;          // offered
-  int inliers = 0;           // used
-  int flow_rejected = 0;     // moved otherwise than the scene [Chu2021, eq. 12]
-  int pose_rejected = 0;     // outliers of the pose
-  int map_rejected = 0;      // landmarks that the bundle adjustment took out
-  int gated_readings = 0;    // of polarization, kept until now, inconsistent after all
-  int keyframes = 0;         // 1 when this measurement made one
-  int returns = 0;           // 1 when a known place was recognized
-  int failed_solves = 0;     // optimizations without a usable answer: the old one stays
+  int features = 0;        // offered
+  int inliers = 0;         // used
+  int flow_rejected = 0;   // moved otherwise than the scene [Chu2021, eq. 12]
+  int pose_rejected = 0;   // outliers of the pose
+  int map_rejected = 0;    // landmarks that the bundle adjustment took out
+  int imu_wrong = 0;       // 1 when the IMU contradicted what it and the pictures agreed on before
+  int pictures_wrong = 0;  // 1 when the pictures did
+  int gated_readings = 0;  // of polarization, kept until now, inconsistent after all
+  int keyframes = 0;       // 1 when this measurement made one
+  int returns = 0;         // 1 when a known place was recognized
+  int failed_solves = 0;   // optimizations without a usable answer: the old one stays
   int window_keyframes = 0;  // in the map, when all is done
   int window_landmarks = 0;
   // Chi square of the pose's inliers over its degrees of freedom: 1 when their sigmas are honest

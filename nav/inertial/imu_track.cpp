@@ -24,7 +24,12 @@ ImuTrack::ImuTrack(const ImuCalibration& calibration, const InertialOptions& opt
 void ImuTrack::Begin(TimeNs stamp, const Motion& motion) {
   at_ = stamp;
   sum_ = {.gyro_bias = motion.gyro_bias, .accel_bias = motion.accel_bias};
-  complete_ = true;
+  complete_ = stamp >= distrusted_until_;
+}
+
+void ImuTrack::Distrust(TimeNs until) {
+  distrusted_until_ = until;
+  complete_ = false;
 }
 
 void ImuTrack::Advance(TimeNs stamp) {

@@ -1,8 +1,8 @@
 // How has the IMU moved since the last keyframe?
 //
 // Sums up readings from frame to frame, predicts each frame from the last keyframe's state, and
-// gives the edge between two keyframes. When readings are missing there is no answer until the next
-// keyframe.
+// gives the edge between two keyframes. When readings are missing, or not to be trusted, there is
+// no answer until the next keyframe.
 #pragma once
 
 #include <optional>
@@ -21,6 +21,9 @@ class ImuTrack {
 
   // A keyframe at the newest frame: the sum begins anew.
   void Begin(TimeNs stamp, const Motion& motion);
+
+  // It has gone wrong: until then there is no answer.
+  void Distrust(TimeNs until);
 
   // Up to the next frame.
   void Advance(TimeNs stamp);
@@ -46,6 +49,7 @@ class ImuTrack {
   TimeNs at_ = 0;
   Preintegration sum_;
   bool complete_ = false;
+  TimeNs distrusted_until_ = 0;
   Eigen::Vector3d slow_rate_ = Eigen::Vector3d::Zero();  // mean of the last seconds
 };
 

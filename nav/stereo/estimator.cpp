@@ -21,6 +21,9 @@ constexpr double kCoastRateSigma_rad_s = 0.05;
 constexpr double kImuSpeedSigma_m_s = 0.1;
 constexpr double kImuRateSigma_rad_s = 0.01;
 
+// An IMU found wrong is not asked for so long; what is still wrong then is found out again.
+constexpr double kImuOnTrial_s = 1.0;
+
 constexpr std::size_t kFirstKeyframes = 4;
 constexpr double kFirstKeyframeInterval_s = 0.25;
 
@@ -86,11 +89,9 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   const TimeNs before = starting ? features.stamp : stamp_;
   const Eigen::Quaterniond q_before = T_WB_.q;
   const Expectation expected = Expect(features.stamp);
-  const std::vector<LandmarkView> views =
-      RejectMoving(MatchLandmarks(camera_, window_, features), expected, report);
-  const auto solution = SolvePose(camera_, views, expected.pose.T_WB, solver_, options_.min_inliers,
-                                  step_ > 0 ? std::optional(expected.pose) : std::nullopt);
-  if (solution) Follow(*solution, expected, views);
+  const PoseVerdict verdict = Solve(features, expected, report);
+  const std::optional<PoseSolution>& solution = verdict.solution;
+  if (solution) Follow(verdict, expected, ToSeconds(features.stamp - before));
   if (!solution && !starting) Coast(expected);
   step_ = features.stamp - before;
   stamp_ = features.stamp;
@@ -101,15 +102,15 @@ Report StereoEstimator::ProcessFeatures(const StereoFeatures& features) {
   }
   if (solution) {
     report.inliers = solution->inliers;
-    report.pose_rejected = static_cast<int>(views.size()) - solution->inliers;
+    report.pose_rejected = static_cast<int>(verdict.views.size()) - solution->inliers;
     report.vision_nis = solution->nis;
   }
   watch.Lap(Stage::kPose);
-  if (!solution || NeedsKeyframe(report.inliers)) {
+  if (!solution || verdict.imu_wrong || NeedsKeyframe(report.inliers)) {
     if (!solution && !expected.by_imu) Begin(covariance_);
     std::optional<CoastSigmas> coasted;
     if (!solution) coasted = SigmasOf(expected.pose.covariance);
-    AddKeyframe(features, solution ? views : std::vector<LandmarkView>{}, coasted);
+    AddKeyframe(features, solution ? verdict.views : std::vector<LandmarkView>{}, coasted);
     OptimizeWindow(features, report);
   }
   if (!solution && !starting) report.outcome = Outcome::kUnusable;
@@ -151,25 +152,40 @@ StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
                    MotionCovariance(kCoastSpeedSigma_m_s * dt, kCoastRateSigma_rad_s * dt)}};
 }
 
-std::vector<LandmarkView> StereoEstimator::RejectMoving(const std::vector<LandmarkView>& views,
-                                                        const Expectation& expected,
-                                                        Report& report) {
-  const std::vector<bool> verdicts =
-      MovesWithScene(camera_, views, expected.pose, adjustment_.sigmas, options_.flow_gate_sigmas);
-  std::vector<LandmarkView> kept;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (verdicts[i]) kept.push_back(views[i]);
+PoseVerdict StereoEstimator::Solve(const StereoFeatures& features, const Expectation& expected,
+                                   Report& report) {
+  PoseQuestion question{.all = MatchLandmarks(camera_, window_, features),
+                        .kept = {},
+                        .by_imu = expected.pose,
+                        .going_on = T_WB_ * motion_};
+  const std::vector<bool> moves_with_scene = MovesWithScene(
+      camera_, question.all, expected.pose, adjustment_.sigmas, options_.flow_gate_sigmas);
+  for (std::size_t i = 0; i < question.all.size(); ++i) {
+    if (moves_with_scene[i]) question.kept.push_back(question.all[i]);
   }
-  report.flow_rejected = static_cast<int>(views.size() - kept.size());
-  return kept;
+  report.flow_rejected = static_cast<int>(question.all.size() - question.kept.size());
+  if (expected.by_imu) {
+    PoseVerdict verdict = JudgePose(camera_, question, solver_, options_.min_inliers);
+    report.imu_wrong = verdict.imu_wrong ? 1 : 0;
+    report.pictures_wrong = verdict.pictures_wrong ? 1 : 0;
+    return verdict;
+  }
+  auto solution =
+      SolvePose(camera_, question.kept, expected.pose.T_WB, solver_, options_.min_inliers,
+                step_ > 0 ? std::optional(expected.pose) : std::nullopt);
+  return {.solution = std::move(solution), .views = std::move(question.kept)};
 }
 
 // Takes over the solved pose; what it disagrees with does not come back.
-void StereoEstimator::Follow(const PoseSolution& solution, const Expectation& expected,
-                             const std::vector<LandmarkView>& views) {
+void StereoEstimator::Follow(const PoseVerdict& verdict, const Expectation& expected, double dt_s) {
+  const PoseSolution& solution = *verdict.solution;
+  const std::vector<LandmarkView>& views = verdict.views;
   motion_ = T_WB_.Inverse() * solution.T_WB;
-  if (expected.by_imu) {
+  if (verdict.imu_wrong) imu_->Distrust(stamp_ + FromSeconds(dt_s + kImuOnTrial_s));
+  if (expected.by_imu && !verdict.imu_wrong) {
     v_WI_ = expected.v_WI + expected.v_by_pose * Difference(solution.T_WB, expected.pose.T_WB);
+  } else if (dt_s > 0.0) {
+    v_WI_ = (solution.T_WB.p - T_WB_.p) / dt_s;
   }
   T_WB_ = solution.T_WB;
   covariance_ = state_covariance_.topLeftCorner<6, 6>() + solution.covariance;

@@ -25,7 +25,7 @@
 #include "nav/inertial/imu_track.h"
 #include "nav/polarization/heading_fusion.h"
 #include "nav/stereo/options.h"
-#include "nav/stereo/pose_solver.h"
+#include "nav/stereo/pose_judge.h"
 #include "nav/stereo/rectifier.h"
 #include "nav/stereo/window_features.h"
 
@@ -51,10 +51,9 @@ class StereoEstimator {
 
   [[nodiscard]] Report ProcessFeatures(const StereoFeatures& features);
   [[nodiscard]] Expectation Expect(TimeNs stamp);
-  [[nodiscard]] std::vector<LandmarkView> RejectMoving(const std::vector<LandmarkView>& views,
-                                                       const Expectation& expected, Report& report);
-  void Follow(const PoseSolution& solution, const Expectation& expected,
-              const std::vector<LandmarkView>& views);
+  [[nodiscard]] PoseVerdict Solve(const StereoFeatures& features, const Expectation& expected,
+                                  Report& report);
+  void Follow(const PoseVerdict& verdict, const Expectation& expected, double dt_s);
   void Coast(const Expectation& expected);
   [[nodiscard]] bool NeedsKeyframe(int inliers) const;
   void AddKeyframe(const StereoFeatures& features, const std::vector<LandmarkView>& seen,

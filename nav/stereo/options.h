@@ -39,7 +39,7 @@ struct TrackerOptions {
   double corner_quality = 0.001;  // of a cell's corner over the image's best [-]
   // Sigma of a blur before tracking; 0: none. Takes noise and aliasing from the patches, and
   // detail.
-  double smoothing_px = 1.0;
+  double smoothing_px = 0.8;
   // Patch side. A large one scatters less and bears blur, but the ground before a car bends in the
   // picture as it comes nearer, which no stretch takes up: 15 px shift it by 0.02 to 0.07 px.
   int window_px = 11;

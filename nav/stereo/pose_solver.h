@@ -18,6 +18,7 @@ struct LandmarkView {
   Viewpoint host;
   Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
   StereoPixel pixel;
+  bool proven = false;  // two keyframes or more have seen it where it should be
 };
 
 struct PoseSolverOptions {

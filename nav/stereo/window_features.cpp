@@ -22,7 +22,8 @@ std::vector<LandmarkView> MatchLandmarks(const RectifiedCamera& camera, const Wi
     views.push_back({.id = f.id,
                      .host = viewpoints[IndexOf(window, found->second.host)],
                      .landmark = found->second.coordinates,
-                     .pixel = PixelOf(f)});
+                     .pixel = PixelOf(f),
+                     .proven = found->second.sightings.size() > 1});
   }
   return views;
 }

@@ -129,6 +129,27 @@ TEST(InertialEstimator, MostOfTheViewMovingIsNotTakenForTheScene) {
   EXPECT_LT(drive.ErrorAt(89), before + 0.3);
 }
 
+// The accelerometer's bias jumps by 2 m/s^2 for three seconds: believed, it would lead off by 9 m.
+TEST(InertialEstimator, AnImuThatGoesWrongIsFoundOut) {
+  Drive drive;
+  drive.Go(0, 60);
+  const Eigen::Vector3d bias = drive.accel_bias;
+  drive.accel_bias.x() += 2.0;
+  int wrong = 0;
+  for (int k = 60; k < 90; ++k) {
+    drive.Feel(k);
+    const Report report = drive.estimator.Process(drive.See(k));
+    wrong += report.imu_wrong;
+    EXPECT_TRUE(report.estimate->tracked) << k;
+    drive.last = *report.estimate;
+  }
+  EXPECT_GT(wrong, 0);
+  EXPECT_LT(drive.ErrorAt(89), 0.5);
+  drive.accel_bias = bias;
+  drive.Go(90, 120);
+  EXPECT_LT(drive.ErrorAt(119), 0.5);
+}
+
 // Missing readings break the thread; nothing is made up for them.
 TEST(InertialEstimator, AGapInTheReadingsIsBridgedByVision) {
   Drive drive;

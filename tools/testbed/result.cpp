@@ -23,6 +23,8 @@ Json ToJson(const OutcomeCounts& counts) {
           {"flow_rejected", counts.flow_rejected},
           {"pose_rejected", counts.pose_rejected},
           {"map_rejected", counts.map_rejected},
+          {"imu_wrong", counts.imu_wrong},
+          {"pictures_wrong", counts.pictures_wrong},
           {"returns", counts.returns},
           {"gated_readings", counts.gated_readings},
           {"failed_solves", counts.failed_solves}};

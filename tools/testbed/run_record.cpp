@@ -15,6 +15,8 @@ void OutcomeCounts::Add(const nav::Report& report) {
   flow_rejected += static_cast<std::uint64_t>(report.flow_rejected);
   pose_rejected += static_cast<std::uint64_t>(report.pose_rejected);
   map_rejected += static_cast<std::uint64_t>(report.map_rejected);
+  imu_wrong += static_cast<std::uint64_t>(report.imu_wrong);
+  pictures_wrong += static_cast<std::uint64_t>(report.pictures_wrong);
   gated_readings += static_cast<std::uint64_t>(report.gated_readings);
   returns += static_cast<std::uint64_t>(report.returns);
   failed_solves += static_cast<std::uint64_t>(report.failed_solves);

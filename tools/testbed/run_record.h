@@ -29,9 +29,11 @@ struct OutcomeCounts {
   std::uint64_t keyframes = 0;
   std::uint64_t features = 0;  // offered
   std::uint64_t inliers = 0;
-  std::uint64_t flow_rejected = 0;  // moved otherwise than the scene [Chu2021, eq. 12]
-  std::uint64_t pose_rejected = 0;  // outliers of the pose
-  std::uint64_t map_rejected = 0;   // landmarks that the bundle adjustment took out
+  std::uint64_t flow_rejected = 0;   // moved otherwise than the scene [Chu2021, eq. 12]
+  std::uint64_t pose_rejected = 0;   // outliers of the pose
+  std::uint64_t map_rejected = 0;    // landmarks that the bundle adjustment took out
+  std::uint64_t imu_wrong = 0;       // frames; see nav/stereo/pose_judge.h
+  std::uint64_t pictures_wrong = 0;  // likewise
   std::uint64_t gated_readings = 0;
   std::uint64_t returns = 0;  // places recognized
   std::uint64_t failed_solves = 0;

@@ -13,13 +13,15 @@ bool FollowsFeatures(const EstimatorRun& run) { return !run.diagnostics.frames.e
 std::string PointTable(const std::vector<EstimatorRun>& runs) {
   HtmlTable table{
       .rows = {{"", "offered", "inliers", "against the flow", "outliers of the pose",
-                "out of the map", "sky readings gated", "places recognized", "failed solves"}}};
+                "out of the map", "frames against the IMU", "frames against the pictures",
+                "sky readings gated", "places recognized", "failed solves"}}};
   for (const EstimatorRun& run : runs) {
     if (!FollowsFeatures(run)) continue;
     const OutcomeCounts& c = run.counts;
     std::vector<std::string> row = {run.name};
-    for (const std::uint64_t n : {c.features, c.inliers, c.flow_rejected, c.pose_rejected,
-                                  c.map_rejected, c.gated_readings, c.returns, c.failed_solves}) {
+    for (const std::uint64_t n :
+         {c.features, c.inliers, c.flow_rejected, c.pose_rejected, c.map_rejected, c.imu_wrong,
+          c.pictures_wrong, c.gated_readings, c.returns, c.failed_solves}) {
       row.push_back(std::to_string(n));
     }
     table.rows.push_back(row);
