@@ -14,6 +14,10 @@ constexpr double kContradiction = 25.0;
 // a fault of the IMU nine tenths and more agree with each other.
 constexpr double kNearlyAll = 0.8;
 
+// Of all points must agree where the proven landmarks do not tell: drops on the lens make six
+// tenths.
+constexpr double kMost = 0.7;
+
 // With fewer of all points agreeing with the IMU, the pictures are asked alone.
 constexpr double kFew = 0.5;
 
@@ -47,10 +51,6 @@ PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& questio
 
   std::vector<LandmarkView> proven;
   std::ranges::copy_if(question.all, std::back_inserter(proven), &LandmarkView::proven);
-  if (contradicts && IsNearlyAll(ProvenInliers(*first, question.kept), proven, min_inliers)) {
-    verdict.imu_wrong = true;
-    return verdict;
-  }
   const auto alone = SolvePose(camera, proven, question.going_on, options, min_inliers);
   const bool agreed = alone && IsNearlyAll(alone->inliers, proven, min_inliers);
   if (agreed && Contradicts(alone->T_WB, by_imu.T_WB, by_imu.covariance + alone->covariance)) {
@@ -59,6 +59,12 @@ PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& questio
             .imu_wrong = true};
   }
   if (!contradicts) return verdict;
+  // Proven landmarks that are far bear either out: then all points together have to be many more.
+  if (first->inliers > kMost * static_cast<double>(question.all.size()) &&
+      IsNearlyAll(ProvenInliers(*first, question.kept), proven, min_inliers)) {
+    verdict.imu_wrong = true;
+    return verdict;
+  }
   if (!agreed) return {.solution = {}, .views = {}, .pictures_wrong = true};
   return {.solution = SolvePose(camera, proven, by_imu.T_WB, options, min_inliers, by_imu),
           .views = proven,
