@@ -154,10 +154,8 @@ StereoEstimator::Expectation StereoEstimator::Expect(TimeNs stamp) {
 
 PoseVerdict StereoEstimator::Solve(const StereoFeatures& features, const Expectation& expected,
                                    Report& report) {
-  PoseQuestion question{.all = MatchLandmarks(camera_, window_, features),
-                        .kept = {},
-                        .by_imu = expected.pose,
-                        .going_on = T_WB_ * motion_};
+  PoseQuestion question{
+      .all = MatchLandmarks(camera_, window_, features), .kept = {}, .by_imu = expected.pose};
   const std::vector<bool> moves_with_scene = MovesWithScene(
       camera_, question.all, expected.pose, adjustment_.sigmas, options_.flow_gate_sigmas);
   for (std::size_t i = 0; i < question.all.size(); ++i) {

@@ -51,7 +51,9 @@ PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& questio
 
   std::vector<LandmarkView> proven;
   std::ranges::copy_if(question.all, std::back_inserter(proven), &LandmarkView::proven);
-  const auto alone = SolvePose(camera, proven, question.going_on, options, min_inliers);
+  const bool proven_stand =
+      first && IsNearlyAll(ProvenInliers(*first, question.kept), proven, min_inliers);
+  const auto alone = SolvePose(camera, proven, by_imu.T_WB, options, min_inliers);
   const bool agreed = alone && IsNearlyAll(alone->inliers, proven, min_inliers);
   if (agreed && Contradicts(alone->T_WB, by_imu.T_WB, by_imu.covariance + alone->covariance)) {
     return {.solution = SolvePose(camera, question.all, alone->T_WB, options, min_inliers),
@@ -60,8 +62,7 @@ PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& questio
   }
   if (!contradicts) return verdict;
   // Proven landmarks that are far bear either out: then all points together have to be many more.
-  if (first->inliers > kMost * static_cast<double>(question.all.size()) &&
-      IsNearlyAll(ProvenInliers(*first, question.kept), proven, min_inliers)) {
+  if (proven_stand && first->inliers > kMost * static_cast<double>(question.all.size())) {
     verdict.imu_wrong = true;
     return verdict;
   }

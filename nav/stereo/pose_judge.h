@@ -19,7 +19,6 @@ struct PoseQuestion {
   std::vector<LandmarkView> all;   // of the newest frame
   std::vector<LandmarkView> kept;  // those of them that move with the scene as the IMU expects it
   PosePrior by_imu;
-  Pose going_on;  // where the frame is if the motion from the one before goes on
 };
 
 struct PoseVerdict {

@@ -46,9 +46,14 @@ template <int Z>
   for (Eigen::Index i = kept.first; i < kept.first + kept.count; ++i) gain.row(i).setZero();
   // (1 - K H) P (1 - K H)^T + K R K^T of whatever gain: P - K b^T - b K^T with b = c - K S / 2.
   const Eigen::Matrix<double, kSize, Z> b = c - 0.5 * gain * covariance;
-  for (Eigen::Index j = 0; j < kSize; ++j) {
-    state.P.col(j).noalias() -= gain * b.row(j).transpose();
+  // Of two considered elements nothing changes.
+  const auto moving = gain.template topRows<kEstimated>();
+  for (Eigen::Index j = 0; j < kEstimated; ++j) {
+    state.P.col(j).template head<kEstimated>().noalias() -= moving * b.row(j).transpose();
     state.P.col(j).noalias() -= b * gain.row(j).transpose();
+  }
+  for (Eigen::Index j = kEstimated; j < kSize; ++j) {
+    state.P.col(j).template head<kEstimated>().noalias() -= moving * b.row(j).transpose();
   }
   if (!IsSound(state.P)) correction.repaired = Repair(state.P);
   Move(gain * residual, state);

@@ -19,7 +19,7 @@ struct UkfOptions {
   double gyro_g_sensitivity_deg_s_g = 0.1;  // what gravity fakes on each axis, as a bias
   // The ground under the robot: how its height wanders along the way, and how rough it is where
   // two readings side by side look at it. Larger holds the height less tightly.
-  double terrain_sigma_m_sqrt_m = 0.005;
+  double terrain_sigma_m_sqrt_m = 0.02;
   double roughness_sigma_m = 0.0005;
   double slope_sigma = 0.05;          // seen beside the nadir as the body tilts [-]
   double range_scale_sigma = 0.013;   // speed of sound and offset, as a share of the range

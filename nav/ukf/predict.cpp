@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 #include "nav/inertial/options.h"
 #include "nav/ukf/sigma_points.h"
@@ -11,7 +10,6 @@ namespace polnav::nav::ukf {
 namespace {
 
 constexpr double kFlicker_s = 30.0;
-constexpr double kStep_s = 0.02;     // between two readings of the flow, the swing errs one way
 constexpr int kCurved = 6;           // attitude and rate
 constexpr Eigen::Index kMoved = 9;   // theta, u, p: what an interval changes by more than a factor
 constexpr Eigen::Index kLinear = 6;  // of these, what the curved directions leave: u, p
@@ -26,6 +24,7 @@ double Square(double x) { return x * x; }
 struct Interval {
   Eigen::Vector3d rate;   // without bias
   Eigen::Vector3d force;  // likewise
+  Eigen::Vector3d swing;  // of the force, beside gravity of a level robot
   double gyro_z = 0.0;    // as read
   double h = 0.0;
   Eigen::Quaterniond q;  // before
@@ -33,6 +32,13 @@ struct Interval {
   Eigen::Quaterniond q_next;  // after
   Eigen::Vector3d v_next;
 };
+
+// What the accelerometers read too much.
+Eigen::Vector3d MisreadForce(const Interval& i, const Error& e) {
+  Eigen::Vector3d misread = e.segment<3>(kAccelBias);
+  for (Eigen::Index k = 0; k < 3; ++k) misread(k) += e.segment<3>(kAccelSwing + 3 * k).dot(i.swing);
+  return misread;
+}
 
 // Where a sigma point goes, relative to where the nominal state goes.
 Moved Carry(const Interval& i, const Error& e) {
@@ -42,8 +48,7 @@ Moved Carry(const Interval& i, const Error& e) {
   const Eigen::Quaterniond start = Exp(e.segment<3>(kTheta));
   const Eigen::Quaterniond half = start * (i.q * half_turn);
   const Eigen::Vector3d v = start * (i.v + e.segment<3>(kVelocity));
-  const Eigen::Vector3d v_next =
-      v + i.h * (half * (i.force - e.segment<3>(kAccelBias)) + kGravity_W);
+  const Eigen::Vector3d v_next = v + i.h * (half * (i.force - MisreadForce(i, e)) + kGravity_W);
   const Eigen::Vector3d theta = Log(half * half_turn * i.q_next.conjugate());
   Moved moved;
   moved << theta, Exp(-theta) * v_next - i.v_next,
@@ -53,21 +58,29 @@ Moved Carry(const Interval& i, const Error& e) {
 
 using Rows = Eigen::Matrix<double, kLinear, kSize>;
 
-// What the curved directions leave moves linearly: u' = u - h R da, p' = p + h u - h^2/2 R da. Its
-// rows of u and p; theta has no rest, the others stay.
+// What the curved directions leave moves linearly: u' = u - h R df, p' = p + h u - h^2/2 R df with
+// the misread force df. Its rows of u and p; theta has no rest, the others stay.
 Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half, double h,
-               const Covariance& P) {
+               const Eigen::Vector3d& swing, const Covariance& P) {
   const Eigen::Matrix3d by_accel = h * R_half;
   Rows rest = P.middleRows<kLinear>(kVelocity);
   rest.noalias() -= columns.middleRows<kLinear>(kVelocity) * columns.transpose();
-  Eigen::Matrix<double, 3, kSize> accel = P.middleRows<3>(kAccelBias);
-  accel.noalias() -= columns.middleRows<3>(kAccelBias) * columns.transpose();
-  const Eigen::Matrix<double, 3, kSize> gained = by_accel * accel;
+  Eigen::Matrix<double, 3, kSize> misread = P.middleRows<3>(kAccelBias);
+  Eigen::Matrix<double, 3, kCurved> taken = columns.middleRows<3>(kAccelBias);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    misread.row(k).noalias() += swing.transpose() * P.middleRows<3>(kAccelSwing + 3 * k);
+    taken.row(k).noalias() += swing.transpose() * columns.middleRows<3>(kAccelSwing + 3 * k);
+  }
+  misread.noalias() -= taken * columns.transpose();
+  const Eigen::Matrix<double, 3, kSize> gained = by_accel * misread;
   rest.bottomRows<3>() += h * rest.topRows<3>() - 0.5 * h * gained;
   rest.topRows<3>() -= gained;
   // The same from the other side.
-  const Eigen::Matrix<double, kLinear, 3> aside =
-      rest.middleCols<3>(kAccelBias) * by_accel.transpose();
+  Eigen::Matrix<double, kLinear, 3> across = rest.middleCols<3>(kAccelBias);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    across.col(k).noalias() += rest.middleCols<3>(kAccelSwing + 3 * k) * swing;
+  }
+  const Eigen::Matrix<double, kLinear, 3> aside = across * by_accel.transpose();
   rest.middleCols<3>(kPosition) += h * rest.middleCols<3>(kVelocity) - 0.5 * h * aside;
   rest.middleCols<3>(kVelocity) -= aside;
   return rest;
@@ -76,14 +89,11 @@ Rows CarryRest(const Columns<kCurved>& columns, const Eigen::Matrix3d& R_half, d
 void AddNoise(const Interval& i, const ProcessNoise& n, Covariance& P) {
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kTheta).array() += i.h * n.gyro_rad2_s;
-  // Beside gravity of a level robot, whose share is in the biases.
-  const Eigen::Vector3d swing = i.force - Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
-  const double accel = n.accel_m2_s3 + n.accel_by_swing2_s * swing.squaredNorm();
   for (Eigen::Index k = 0; k < 3; ++k) {
-    P(kVelocity + k, kVelocity + k) += i.h * accel;
-    P(kPosition + k, kPosition + k) += 0.25 * i.h * i.h * i.h * accel;
-    P(kPosition + k, kVelocity + k) += 0.5 * i.h * i.h * accel;
-    P(kVelocity + k, kPosition + k) += 0.5 * i.h * i.h * accel;
+    P(kVelocity + k, kVelocity + k) += i.h * n.accel_m2_s3;
+    P(kPosition + k, kPosition + k) += 0.25 * i.h * i.h * i.h * n.accel_m2_s3;
+    P(kPosition + k, kVelocity + k) += 0.5 * i.h * i.h * n.accel_m2_s3;
+    P(kVelocity + k, kPosition + k) += 0.5 * i.h * i.h * n.accel_m2_s3;
   }
   diagonal.segment<3>(kGyroBias).array() += i.h * n.gyro_bias_rad2_s3;
   diagonal.segment<3>(kAccelBias).array() += i.h * n.accel_bias_m2_s5;
@@ -138,14 +148,12 @@ Moved Gather(const Interval& i, const Columns<kCurved>& columns, const Rows& res
 }  // namespace
 
 ProcessNoise NoiseOf(const ImuCalibration& imu, const UkfOptions& options, double sky_time_s) {
-  const double crooked = options.misalignment_sigma_deg * std::numbers::pi / 180.0;
   return {.gyro_rad2_s = Square(imu.gyro_noise_rad_s_sqrt_hz),
           .accel_m2_s3 = Square(imu.accel_noise_m_s2_sqrt_hz),
           .gyro_bias_rad2_s3 = Square(imu.gyro_bias_walk_rad_s_sqrt_s) +
                                Square(imu.gyro_bias_instability_rad_s) / kFlicker_s,
           .accel_bias_m2_s5 = Square(imu.accel_bias_walk_m_s2_sqrt_s) +
                               Square(imu.accel_bias_instability_m_s2) / kFlicker_s,
-          .accel_by_swing2_s = (Square(options.accel_scale_sigma) + Square(crooked)) * kStep_s,
           .terrain_m2_m = Square(options.terrain_sigma_m_sqrt_m),
           .sky_time_s = std::max(sky_time_s, 1e-3)};
 }
@@ -157,6 +165,7 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
              .h = h_s,
              .q = state.q_WI,
              .v = state.v_WI};
+  i.swing = i.force - Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
   i.rate = gyro_rad_s - state.gyro_bias - gyro_rad_s.z() * state.GyroTurn();
   const Eigen::Quaterniond half_turn = Exp(0.5 * h_s * i.rate);
   const Eigen::Quaterniond half = i.q * half_turn;
@@ -165,7 +174,7 @@ void Predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s
   i.v_next = i.v + h_s * acceleration;
 
   const Columns<kCurved> columns = TakeCurved(i.gyro_z, state.P);
-  const Rows rest = CarryRest(columns, half.toRotationMatrix(), h_s, state.P);
+  const Rows rest = CarryRest(columns, half.toRotationMatrix(), h_s, i.swing, state.P);
   Error shift = Error::Zero();
   shift.head<kMoved>() = Gather(i, columns, rest, state.P);
   AddNoise(i, noise, state.P);

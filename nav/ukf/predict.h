@@ -2,7 +2,8 @@
 //
 // Readings are means over the interval, the force seen from the attitude half way (docs/imu.md):
 //   w = gyro - gyro_bias - gyro_z turn,  q' = q Exp(w h)
-//   v' = v + h (q Exp(w h / 2) (accel - accel_bias) + g),  p' = p + h (v + v') / 2
+//   v' = v + h (q Exp(w h / 2) (accel - accel_bias - accel_swing s) + g),  p' = p + h (v + v') / 2
+// s: the force beside gravity of a level robot, whose share is in the biases.
 // Curved along the attitude's error and that of the rate; linear, and so exact without sigma
 // points, along all others (sigma_points.h).
 #pragma once
@@ -19,10 +20,6 @@ struct ProcessNoise {
   double accel_m2_s3 = 0.0;
   double gyro_bias_rad2_s3 = 0.0;
   double accel_bias_m2_s5 = 0.0;
-  // Errors in proportion to how the force swings with the steps, and how long they act in one
-  // direction. They come again with every step: if the filter took the velocity through a step from
-  // the accelerometers rather than from the flow, their scale would become the walk's.
-  double accel_by_swing2_s = 0.0;
   double terrain_m2_m = 0.0;  // a metre of the way
   double sky_time_s = 1.0;    // correlation of the sky's slow errors
 };

@@ -79,6 +79,10 @@ State StartState(const UkfOptions& options, const ImuCalibration& imu,
   variance(kSkySlow) = variance(kSkyForeign) = 1.0;
   variance(kFlowScale) = Square(flow.flow_scale_sigma) + Square(options.range_scale_sigma);
   variance(kFlowYaw) = across;
+  variance.segment<9>(kAccelSwing).setConstant(Square(crooked));
+  for (const Eigen::Index axis : {0, 4, 8}) {
+    variance(kAccelSwing + axis) = Square(options.accel_scale_sigma);
+  }
   variance(kSkyOffset) = Square(DegToRad(options.sky_offset_sigma_deg));
   Covariance by = Covariance::Identity();  // IMU's position by the body's
   by.block<3, 3>(kPosition, kTheta) = -Skew(lever_W);

@@ -1,7 +1,7 @@
 // What does the filter of a walking robot know, and in which coordinates does it err?
 //
 //   I     the IMU's axes and origin; the nominal state is a point on the manifold
-//   error (28): truth = nominal moved by it, all in W unless said otherwise
+//   error (37): truth = nominal moved by it, all in W unless said otherwise
 //     theta    q_true = Exp(theta) q                  [rad]
 //     u        v_true = Exp(theta) (v + u)            [m/s]
 //     p        p_true = p + dp                        [m]
@@ -38,7 +38,10 @@ enum Index : Eigen::Index {
   kFlowScale = 25,  // of the velocity that flow and range make together, relative
   kFlowYaw = 26,    // its turn about the optical axis [rad]
   kSkyOffset = 27,  // of a reading of the sky [rad]
-  kSize = 28
+  // By rows, what the accelerometers make of a force beside gravity: scales and leaning axes, whose
+  // errors come again with every step.
+  kAccelSwing = 28,
+  kSize = 37
 };
 inline constexpr Eigen::Index kNavigation = 15;  // the first: position, motion and biases
 inline constexpr Eigen::Index kSlow = kSize - kNavigation;

@@ -13,13 +13,13 @@ namespace {
 // is good for 1 cm and 1 mrad, points are seen to a third of a pixel.
 class PoseJudgeTest : public ::testing::Test {
  protected:
-  // Seen from `from`; 3 m to 15 m away.
-  void Add(int count, const Pose& from, bool proven) {
+  // Seen from `from`; nearest_m and up to 12 m more away.
+  void Add(int count, const Pose& from, bool proven, double nearest_m = 3.0) {
     std::uniform_real_distribution<double> uniform;
     std::normal_distribution<double> noise(0.0, 0.3);
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3d landmark(1.2 * uniform(engine_) - 0.6, 0.6 * uniform(engine_) - 0.3,
-                                     1.0 / (3.0 + 12.0 * uniform(engine_)));
+                                     1.0 / (nearest_m + 12.0 * uniform(engine_)));
       StereoPixel seen{.disparity_px = 0.0};
       const auto e = Reproject(camera_, ViewpointOf(camera_, keyframe_), ViewpointOf(camera_, from),
                                landmark, seen, {1.0, 1.0});
@@ -33,11 +33,12 @@ class PoseJudgeTest : public ::testing::Test {
     }
   }
 
-  [[nodiscard]] PoseVerdict Judge(const Pose& by_imu) const {
+  [[nodiscard]] PoseVerdict Judge(const Pose& by_imu) const { return Judge(by_imu, views_); }
+  [[nodiscard]] PoseVerdict Judge(const Pose& by_imu, const std::vector<LandmarkView>& kept) const {
     Eigen::Matrix<double, 6, 1> sigmas;
     sigmas << 0.01, 0.01, 0.01, 1e-3, 1e-3, 1e-3;
     const PosePrior prior{by_imu, sigmas.cwiseAbs2().asDiagonal()};
-    return JudgePose(camera_, {views_, views_, prior, truth_}, options_, 12);
+    return JudgePose(camera_, {views_, kept, prior}, options_, 12);
   }
 
   [[nodiscard]] double ErrorOf(const PoseVerdict& verdict) const {
@@ -87,6 +88,17 @@ TEST_F(PoseJudgeTest, WithoutWitnessesTheImuIsBelieved) {
   const PoseVerdict verdict = Judge(truth_);
   EXPECT_TRUE(verdict.pictures_wrong);
   EXPECT_FALSE(verdict.solution);
+}
+
+// Proven landmarks that are all far away bear the IMU out, and would bear out much else: moving
+// points near by, which the flow rejected, are no reason to doubt.
+TEST_F(PoseJudgeTest, FarLandmarksThatAgreeWithTheImuDoNotConvictIt) {
+  Add(15, truth_, true, 60.0);
+  std::vector<LandmarkView> kept = views_;
+  Add(40, wrong_, false);
+  const PoseVerdict verdict = Judge(truth_, kept);
+  EXPECT_FALSE(verdict.imu_wrong || verdict.pictures_wrong);
+  EXPECT_LT(ErrorOf(verdict), 0.02);
 }
 
 // A coach that pulls away, proven as it stood there before, fills seven tenths of the view.
