@@ -21,9 +21,9 @@ constexpr double kMost = 0.7;
 // With fewer of all points agreeing with the IMU, the pictures are asked alone.
 constexpr double kFew = 0.5;
 
-bool Contradicts(const Pose& T_WB, const Pose& expected, const Matrix6d& covariance) {
+double SquareOf(const Pose& T_WB, const Pose& expected, const Matrix6d& covariance) {
   const Eigen::Matrix<double, 6, 1> d = Difference(T_WB, expected);
-  return d.dot(Eigen::LDLT<Matrix6d>(covariance).solve(d)) > kContradiction;
+  return d.dot(Eigen::LDLT<Matrix6d>(covariance).solve(d));
 }
 
 bool IsNearlyAll(int agreeing, const std::vector<LandmarkView>& proven, int min_inliers) {
@@ -36,6 +36,49 @@ int ProvenInliers(const PoseSolution& solution, const std::vector<LandmarkView>&
   return n;
 }
 
+// What the views cost at a pose: twice the robust loss that SolvePose minimizes.
+double CostOf(const RectifiedCamera& camera, const std::vector<LandmarkView>& views,
+              const Pose& T_WB, const PoseSolverOptions& options) {
+  const Viewpoint target = ViewpointOf(camera, T_WB);
+  const double huber = options.huber_sigmas;
+  double cost = 0.0;
+  for (const LandmarkView& view : views) {
+    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, options.sigmas);
+    if (!e) continue;
+    const double norm = e->residual.norm();
+    cost += norm <= huber ? norm * norm : huber * (2.0 * norm - huber);
+  }
+  return cost;
+}
+
+// What the proven landmarks say by themselves.
+struct Testimony {
+  std::vector<LandmarkView> proven;
+  std::optional<PoseSolution> alone;  // nothing where they do not agree with each other
+  std::optional<PoseSolution> with_imu;
+  bool against_imu = false;
+};
+
+Testimony Hear(const RectifiedCamera& camera, const PoseQuestion& question,
+               const PoseSolverOptions& options, int min_inliers) {
+  const PosePrior& by_imu = question.by_imu;
+  Testimony t;
+  std::ranges::copy_if(question.all, std::back_inserter(t.proven), &LandmarkView::proven);
+  t.alone = SolvePose(camera, t.proven, by_imu.T_WB, options, min_inliers);
+  if (t.alone && !IsNearlyAll(t.alone->inliers, t.proven, min_inliers)) t.alone.reset();
+  t.with_imu = SolvePose(camera, t.proven, by_imu.T_WB, options, min_inliers, by_imu);
+  if (!t.alone || !t.with_imu) {
+    t.against_imu = t.alone.has_value();
+    return t;
+  }
+  // A ratio of likelihoods: few points may fit another pose as well, and the IMU all the same.
+  const double compromise = CostOf(camera, t.proven, t.with_imu->T_WB, options) +
+                            SquareOf(t.with_imu->T_WB, by_imu.T_WB, by_imu.covariance);
+  const double free = CostOf(camera, t.proven, t.alone->T_WB, options);
+  t.against_imu = compromise > free + kContradiction;
+  return t;
+}
+
 }  // namespace
 
 PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& question,
@@ -45,31 +88,27 @@ PoseVerdict JudgePose(const RectifiedCamera& camera, const PoseQuestion& questio
       .solution = SolvePose(camera, question.kept, by_imu.T_WB, options, min_inliers, by_imu),
       .views = question.kept};
   const auto& first = verdict.solution;
-  const bool contradicts = first && Contradicts(first->T_WB, by_imu.T_WB, by_imu.covariance);
-  const bool few = !first || first->inliers < kFew * static_cast<double>(question.all.size());
+  const auto all = static_cast<double>(question.all.size());
+  const bool contradicts =
+      first && SquareOf(first->T_WB, by_imu.T_WB, by_imu.covariance) > kContradiction;
+  const bool few = !first || first->inliers < kFew * all;
   if (!contradicts && !few) return verdict;
 
-  std::vector<LandmarkView> proven;
-  std::ranges::copy_if(question.all, std::back_inserter(proven), &LandmarkView::proven);
-  const bool proven_stand =
-      first && IsNearlyAll(ProvenInliers(*first, question.kept), proven, min_inliers);
-  const auto alone = SolvePose(camera, proven, by_imu.T_WB, options, min_inliers);
-  const bool agreed = alone && IsNearlyAll(alone->inliers, proven, min_inliers);
-  if (agreed && Contradicts(alone->T_WB, by_imu.T_WB, by_imu.covariance + alone->covariance)) {
-    return {.solution = SolvePose(camera, question.all, alone->T_WB, options, min_inliers),
+  const Testimony heard = Hear(camera, question, options, min_inliers);
+  if (heard.against_imu) {
+    return {.solution = SolvePose(camera, question.all, heard.alone->T_WB, options, min_inliers),
             .views = question.all,
             .imu_wrong = true};
   }
   if (!contradicts) return verdict;
   // Proven landmarks that are far bear either out: then all points together have to be many more.
-  if (proven_stand && first->inliers > kMost * static_cast<double>(question.all.size())) {
+  if (first->inliers > kMost * all &&
+      IsNearlyAll(ProvenInliers(*first, question.kept), heard.proven, min_inliers)) {
     verdict.imu_wrong = true;
     return verdict;
   }
-  if (!agreed) return {.solution = {}, .views = {}, .pictures_wrong = true};
-  return {.solution = SolvePose(camera, proven, by_imu.T_WB, options, min_inliers, by_imu),
-          .views = proven,
-          .pictures_wrong = true};
+  if (!heard.alone) return {.solution = {}, .views = {}, .pictures_wrong = true};
+  return {.solution = heard.with_imu, .views = heard.proven, .pictures_wrong = true};
 }
 
 }  // namespace polnav::nav
