@@ -36,17 +36,16 @@ int ProvenInliers(const PoseSolution& solution, const std::vector<LandmarkView>&
   return n;
 }
 
-// What the views cost at a pose: twice the robust loss that SolvePose minimizes.
+// Squares of what the views are off by at a pose. One that does not fit at all counts as four: a
+// single point on something that moves must not outvote the rest.
 double CostOf(const RectifiedCamera& camera, const std::vector<LandmarkView>& views,
-              const Pose& T_WB, const PoseSolverOptions& options) {
+              const Pose& T_WB, const PixelSigmas& sigmas) {
+  constexpr double kMostOfOne = 4.0;
   const Viewpoint target = ViewpointOf(camera, T_WB);
-  const double huber = options.huber_sigmas;
   double cost = 0.0;
   for (const LandmarkView& view : views) {
-    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, options.sigmas);
-    if (!e) continue;
-    const double norm = e->residual.norm();
-    cost += norm <= huber ? norm * norm : huber * (2.0 * norm - huber);
+    const auto e = Reproject(camera, view.host, target, view.landmark, view.pixel, sigmas);
+    cost += e ? std::min(e->residual.squaredNorm(), kMostOfOne) : kMostOfOne;
   }
   return cost;
 }
@@ -72,9 +71,9 @@ Testimony Hear(const RectifiedCamera& camera, const PoseQuestion& question,
     return t;
   }
   // A ratio of likelihoods: few points may fit another pose as well, and the IMU all the same.
-  const double compromise = CostOf(camera, t.proven, t.with_imu->T_WB, options) +
+  const double compromise = CostOf(camera, t.proven, t.with_imu->T_WB, options.sigmas) +
                             SquareOf(t.with_imu->T_WB, by_imu.T_WB, by_imu.covariance);
-  const double free = CostOf(camera, t.proven, t.alone->T_WB, options);
+  const double free = CostOf(camera, t.proven, t.alone->T_WB, options.sigmas);
   t.against_imu = compromise > free + kContradiction;
   return t;
 }
