@@ -164,6 +164,7 @@ PoseVerdict StereoEstimator::Solve(const StereoFeatures& features, const Expecta
   report.flow_rejected = static_cast<int>(question.all.size() - question.kept.size());
   if (expected.by_imu) {
     PoseVerdict verdict = JudgePose(camera_, question, solver_, options_.min_inliers);
+    if (verdict.imu_wrong) imu_->Distrust(features.stamp + FromSeconds(kImuOnTrial_s));
     report.imu_wrong = verdict.imu_wrong ? 1 : 0;
     report.pictures_wrong = verdict.pictures_wrong ? 1 : 0;
     return verdict;
@@ -179,7 +180,6 @@ void StereoEstimator::Follow(const PoseVerdict& verdict, const Expectation& expe
   const PoseSolution& solution = *verdict.solution;
   const std::vector<LandmarkView>& views = verdict.views;
   motion_ = T_WB_.Inverse() * solution.T_WB;
-  if (verdict.imu_wrong) imu_->Distrust(stamp_ + FromSeconds(dt_s + kImuOnTrial_s));
   if (expected.by_imu && !verdict.imu_wrong) {
     v_WI_ = expected.v_WI + expected.v_by_pose * Difference(solution.T_WB, expected.pose.T_WB);
   } else if (dt_s > 0.0) {
