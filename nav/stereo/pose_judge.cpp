@@ -6,8 +6,8 @@
 namespace polnav::nav {
 namespace {
 
-// Chi square of six degrees of freedom that one in 3,000 exceeds. Over five scenarios without a
-// fault of the IMU (7,000 frames) none exceeded 17; drops on the lens reach 200, a stuck IMU 40.
+// Chi square of six degrees of freedom that one in 3,000 exceeds. Over four scenarios without a
+// fault of the IMU (5,800 frames) none exceeded 17; drops on the lens reach 200, a stuck IMU 40.
 constexpr double kContradiction = 25.0;
 
 // Of the proven landmarks must agree. A coach that pulls away may fill seven tenths of the view; in
